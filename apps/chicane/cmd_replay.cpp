@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `chicane replay`: shows a recording, computes it again, or branches it with other settings.
+// `chicane replay`: shows recordings in a browser, computes one again (--verify), or branches one with other
+// settings (--branch-at).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,12 +29,12 @@
 #include "program.hpp"
 #include "progress.hpp"
 
-// The keys of what `chicane replay --json` says are a contract (docs/viewer.md#recordings).
-
 namespace chicane::apps {
 namespace {
 
 using protocol::Json;
+
+// JSON of --json, whose keys are a contract (docs/viewer.md#recordings), and texts for people.
 
 Json cycle(const std::optional<std::uint64_t>& number) { return number ? Json(*number) : Json(nullptr); }
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -52,12 +53,10 @@ Json json_of(const recording::Future& future) {
           {"off_track_events", future.off_track_events}};
 }
 
-/// Number in a column of ten characters: "0.50" or a dash.
-std::string cell(double value) {
+/// Number in twelve characters: "0.50", or a dash for one that is not known.
+std::string number_cell(double value) {
   return std::isfinite(value) ? fmt::format("{:12.2f}", value) : fmt::format("{:>12}", "-");
 }
-
-}  // namespace
 
 std::string to_json(const recording::ReplayReport& report) {
   return dump({{"recorded_by", report.recorded_by},
@@ -78,16 +77,15 @@ std::string to_text(const recording::ReplayReport& report) {
   const double share =
       report.steps == 0 ? 0.0
                         : 100.0 * static_cast<double>(report.identical) / static_cast<double>(report.steps);
-  // Never rounded up to 100.
+  // Only a verified recording shows 100: less is not rounded up to it.
   const std::string percent = report.is_verified() ? "100" : fmt::format("{:.3f}", std::min(share, 99.999));
   std::string text =
       fmt::format("{} on {}, recorded by {}:\n{} of {} commands came out identical, bit for bit ({} %)\n",
                   report.controller, report.track.empty() ? "an external simulator's track" : report.track,
                   report.recorded_by, report.identical, report.steps, percent);
-  if (report.first_difference) {
+  if (report.first_difference)
     text +=
         fmt::format("first difference: cycle {} ({} in all)\n", *report.first_difference, report.different);
-  }
   if (report.unknown > 0) text += fmt::format("behind missing steps, not comparable: {}\n", report.unknown);
   if (report.late > 0) text += fmt::format("of which the deadline was spent: {}\n", report.late);
   if (report.damaged > 0) text += fmt::format("damaged parts left out: {}\n", report.damaged);
@@ -105,80 +103,65 @@ std::string to_json(const recording::BranchReport& report) {
                {"branch", json_of(report.branched)}});
 }
 
-/// Table in two columns: the recorded run, and the result of `settings`.
+/// Table of the recorded run beside its branch with `settings`: a name and two numbers in each row.
 std::string to_text(const recording::BranchReport& report,
                     const std::vector<std::pair<std::string, std::string>>& settings) {
   std::string changes;
-  for (const auto& [key, value] : settings) {
+  for (const auto& [key, value] : settings)
     changes += fmt::format("{}{} = {}", changes.empty() ? "" : ", ", key, value);
-  }
   std::string text = fmt::format("from {:.2f} s on: {}\n\n{:24}{:>12}{:>12}\n", report.at,
                                  changes.empty() ? "nothing changed" : changes, "", "recorded", "branch");
-  const auto row = [&](std::string_view name, double was, double is) {
-    text += fmt::format("{:24}{}{}\n", name, cell(was), cell(is));
+  const auto row = [&](std::string_view name, double recorded, double branched) {
+    text += fmt::format("{:24}{}{}\n", name, number_cell(recorded), number_cell(branched));
   };
-  const recording::Future &was = report.recorded, &is = report.branched;
-  row("duration [s]", was.duration, is.duration);
-  for (std::size_t i = 0; i < std::max(was.lap_times.size(), is.lap_times.size()); ++i) {
+  const recording::Future &recorded = report.recorded, &branched = report.branched;
+  row("duration [s]", recorded.duration, branched.duration);
+  for (std::size_t i = 0; i < std::max(recorded.lap_times.size(), branched.lap_times.size()); ++i) {
     const auto lap = [&](const recording::Future& future) {
       return i < future.lap_times.size() ? future.lap_times[i] : std::nan("");
     };
-    row(fmt::format("lap time {} [s]", i + 1), lap(was), lap(is));
+    row(fmt::format("lap time {} [s]", i + 1), lap(recorded), lap(branched));
   }
-  row("max |lateral error| [m]", was.max_lateral_error, is.max_lateral_error);
-  row("min edge distance [m]", was.min_edge_distance, is.min_edge_distance);
-  row("mean speed [m/s]", was.mean_speed, is.mean_speed);
-  row("top speed [m/s]", was.top_speed, is.top_speed);
-  text +=
-      fmt::format("{:24}{:>12}{:>12}\n", "off the road, times", was.off_track_events, is.off_track_events);
+  row("max |lateral error| [m]", recorded.max_lateral_error, branched.max_lateral_error);
+  row("min edge distance [m]", recorded.min_edge_distance, branched.min_edge_distance);
+  row("mean speed [m/s]", recorded.mean_speed, branched.mean_speed);
+  row("top speed [m/s]", recorded.top_speed, branched.top_speed);
+  text += fmt::format("{:24}{:>12}{:>12}\n", "off the road, times", recorded.off_track_events,
+                      branched.off_track_events);
   if (!report.end_reason.empty()) text += fmt::format("the branch ended: {}\n", report.end_reason);
-  if (report.first_difference) {
+  if (report.first_difference)
     text += fmt::format(
         "the recording did not come out the same from cycle {} on: the first column is what this program "
         "computes, not what was\n",
         *report.first_difference);
-  }
   return text;
 }
 
-namespace {
+std::string name_of(const std::string& log) { return std::filesystem::path(log).filename().string(); }
 
-/// Recording as the browser gets it: the file itself, or a copy with an index if it is compressed or has none
-/// because its writer was killed.
-class Shown {
+/// Recordings of the page, each in a form that browsers read.
+class ShownLogs {
  public:
-  Shown(const Options& options, LogConverter convert) : options_{options}, convert_{convert} {}
+  ShownLogs(const Options& options, LogConverter convert) : options_{options}, convert_{convert} {}
 
-  Result<void> add(std::string file, std::string name) {
-    if (convert_ != nullptr && recording::is_foreign_log(file)) {
-      copies_.emplace_back(".mcap");
-      if (Result<void> made = convert_(file, options_, copies_.back().path()); !made) return made;
-      file = copies_.back().path();
-    }
-    const Result<telemetry::McapReport> read = recording::check_recording(file);
-    if (!read) return fail(read.error());
-    if (read->damaged > 0) fmt::print(stderr, "{}: damaged parts left out: {}\n", file, read->damaged);
-    std::string served = std::filesystem::absolute(file).string();
-    if (!read->is_complete || read->is_compressed || read->damaged > 0) {
-      copies_.emplace_back(".mcap");
-      served = copies_.back().path();
-      if (const auto copied = recording::indexed_copy(file, served); !copied) return fail(copied.error());
-    }
-    std::string settings;
-    if (const auto scenario = recording::recorded_scenario(served)) {
-      settings = protocol::schema_json(*scenario, *scenario, &protocol::is_live, {});
-    }
-    logs_.push_back({std::move(name), std::move(served), std::move(settings)});
+  /// Adds a recording or a log of another program; viewers see its name.
+  Result<void> add(const std::string& file, std::string name) {
+    const Result<std::string> mcap = as_mcap(file);
+    if (!mcap) return fail(mcap.error());
+    const Result<std::string> readable = readable_form(*mcap);
+    if (!readable) return fail(readable.error());
+    const auto scenario = recording::recorded_scenario(*readable);
+    logs_.push_back({std::move(name), *readable,
+                     scenario ? protocol::schema_json(*scenario, *scenario, &protocol::is_live, {}) : ""});
     return {};
   }
   [[nodiscard]] const std::vector<live::ServedLog>& logs() const { return logs_; }
-  /// Branches one of the recordings. Viewers get names, not files.
+  /// Branches one of the recordings; messages have its name in place of the file.
   [[nodiscard]] Result<recording::BranchReport> branch(const live::WhatIfQuestion& question,
                                                        const recording::BranchHooks& hooks) const {
-    if (question.log >= logs_.size()) {
+    if (question.log >= logs_.size())
       return fail(ErrorCode::kInvalidArgument,
                   fmt::format("what if: log: got {}, expected one of {}", question.log, logs_.size()));
-    }
     recording::BranchOptions options = question.options;
     options.log = logs_[question.log].file;
     auto report = recording::branch_recording(options, hooks);
@@ -190,13 +173,33 @@ class Shown {
   }
 
  private:
+  /// The file itself, or a conversion of a log of another program.
+  Result<std::string> as_mcap(const std::string& file) {
+    if (convert_ == nullptr || !recording::is_foreign_log(file)) return file;
+    const std::string& copy = copies_.emplace_back(".mcap").path();
+    const Result<void> made = convert_(file, options_, copy);
+    return made ? Result<std::string>(copy) : fail(made.error());
+  }
+  /// The file itself, or a copy if it is compressed, damaged, or without an index as of a killed writer.
+  Result<std::string> readable_form(const std::string& file) {
+    const Result<telemetry::McapReport> read = recording::check_recording(file);
+    if (!read) return fail(read.error());
+    if (read->damaged > 0) fmt::print(stderr, "{}: damaged parts left out: {}\n", file, read->damaged);
+    if (read->is_complete && !read->is_compressed && read->damaged == 0)
+      return std::filesystem::absolute(file).string();
+    const std::string& copy = copies_.emplace_back(".mcap").path();
+    const auto copied = recording::indexed_copy(file, copy);
+    return copied ? Result<std::string>(copy) : fail(copied.error());
+  }
+
   const Options& options_;
   LogConverter convert_;
   std::list<recording::TemporaryFile> copies_;
   std::vector<live::ServedLog> logs_;
 };
 
-Result<void> show(const Options& options, const Shown& shown, double start) {
+/// Serves the page until the program is interrupted; `start`: time that the page shows first [s].
+Result<void> show(const Options& options, const ShownLogs& shown, double start) {
   static std::atomic<bool> stop{false};  // static: must outlive the last signal
   catch_interrupts(stop);
   live::WhatIf what_if([&shown](const live::WhatIfQuestion& question, const recording::BranchHooks& hooks) {
@@ -214,11 +217,12 @@ Result<void> show(const Options& options, const Shown& shown, double start) {
       net::Server::create(*serving, router.handlers(std::move(pages)), live::embedded_assets());
   if (!server) return fail(server.error());
   print_sentence(stderr, fmt::format("recordings at {} (Ctrl-C ends)", link(*serving, (*server)->port())));
-  while (!stop) std::this_thread::sleep_for(std::chrono::milliseconds{20});
+  while (!stop)  // polled, because a signal handler can notify nothing
+    std::this_thread::sleep_for(std::chrono::milliseconds{20});
   return {};
 }
 
-/// The second future's recording while it is computed.
+/// Recorder of a branch while it is computed.
 class BranchRecorder {
  public:
   explicit BranchRecorder(std::string file) : file_{std::move(file)} {}
@@ -229,7 +233,7 @@ class BranchRecorder {
             .on_frame = [this](const telemetry::Frame& frame) { recorder_->record(frame); },
             .on_lap = [this](const telemetry::CompletedLap& lap) { recorder_->record(lap); }};
   }
-  /// The file is this branch's own.
+  /// Whether the file has been begun: it holds nothing but this branch.
   [[nodiscard]] bool has_file() const { return recorder_ != nullptr; }
   Result<void> finish() {
     if (recorder_ == nullptr) return {};
@@ -255,14 +259,24 @@ class BranchRecorder {
   std::unique_ptr<recording::Recorder> recorder_;
 };
 
+/// Whether the command ends by serving a page.
 bool has_page(const Options& options) { return options.is_served && !options.is_json; }
+
+/// Shows the recording and its branch side by side.
+Result<void> show_branch(const Options& options, const std::string& branch_file, double at) {
+  const std::string& log = options.log_files.front();
+  ShownLogs shown(options, nullptr);
+  if (Result<void> added = shown.add(log, name_of(log)); !added) return added;
+  if (Result<void> added = shown.add(branch_file, fmt::format("branch at {:.1f} s", at)); !added)
+    return added;
+  return show(options, shown, at);
+}
 
 Result<ExitCode> branch(const Options& options) {
   const std::string& log = options.log_files.front();
-  if (options.log_files.size() > 1) {
+  if (options.log_files.size() > 1)
     return fail(ErrorCode::kInvalidArgument,
                 fmt::format("logs: got {}, expected one to branch from", options.log_files.size()));
-  }
   const recording::TemporaryFile temporary(".mcap");
   const std::string& file = options.output_file.empty() ? temporary.path() : options.output_file;
   BranchRecorder recorder(file);
@@ -281,12 +295,7 @@ Result<ExitCode> branch(const Options& options) {
   fmt::print("{}", options.is_json ? to_json(*report) : to_text(*report, options.settings));
   std::fflush(stdout);
   if (has_page(options)) {
-    Shown shown(options, nullptr);
-    if (Result<void> added = shown.add(log, std::filesystem::path(log).filename().string()); !added)
-      return fail(added.error());
-    if (Result<void> added = shown.add(file, fmt::format("branch at {:.1f} s", report->at)); !added)
-      return fail(added.error());
-    if (Result<void> done = show(options, shown, report->at); !done) return fail(done.error());
+    if (Result<void> done = show_branch(options, file, report->at); !done) return fail(done.error());
   }
   return report->first_difference ? kRunFailed : kSuccess;
 }
@@ -303,14 +312,11 @@ Result<ExitCode> verify(const Options& options) {
 }
 
 Result<ExitCode> show_logs(const Options& options, LogConverter convert) {
-  if (!has_page(options)) {
+  if (!has_page(options))
     return fail(ErrorCode::kInvalidArgument, "replay: got nothing to do, expected --verify or --branch-at");
-  }
-  Shown shown(options, convert);
-  for (const std::string& log : options.log_files) {
-    if (Result<void> added = shown.add(log, std::filesystem::path(log).filename().string()); !added)
-      return fail(added.error());
-  }
+  ShownLogs shown(options, convert);
+  for (const std::string& log : options.log_files)
+    if (Result<void> added = shown.add(log, name_of(log)); !added) return fail(added.error());
   if (Result<void> done = show(options, shown, 0.0); !done) return fail(done.error());
   return kSuccess;
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Options of the commands about one run, its recordings and its car.
+// Tables of the options of `drive`, `serve`, `simulate`, `ros`, `replay`, `report`, `identify` and `check`. A
+// row has the option's name, its value's name, its meaning in --help, the member of Options or the setting
+// that it fills, and rules such as a range.
 #include <fmt/format.h>
 
 #include <string>
@@ -61,7 +63,7 @@ Rows topic_rows(Options& o) {
           {"--drive-topic", "TOPIC", "Commands of a bag that has several", &o.identify.drive_topic}};
 }
 
-/// Options that read logs of other programs; `excludes`: option that excludes them.
+/// Options for logs of other programs; they are refused beside the options `excludes`.
 Rows foreign_rows(Options& o, std::vector<std::string_view> excludes) {
   return joined(
       {{{"--track", "NAME|FILE", "Road of a log of another program", Setting{"track"}, without(excludes)},
@@ -69,6 +71,7 @@ Rows foreign_rows(Options& o, std::vector<std::string_view> excludes) {
        topic_rows(o)});
 }
 
+/// Option whose value in miles per hour fills the setting in m/s.
 OptionRow speed_mph_row(Options& o) {
   const auto take = [&o](const std::string& text) -> std::string {
     const std::optional<double> mph = number_in(text);
@@ -91,7 +94,8 @@ Rows ros_network_rows(Options::Ros& ros) {
   return {
       {"--simulate", "", "Be the car and its simulator, for a controller that is a ROS 2 program",
        &ros.is_simulator},
-      {"--domain", "N", "DDS domain", &ros.domain, between(0, 232) | from_variable("ROS_DOMAIN_ID")},
+      {"--domain", "N", "DDS domain", &ros.domain,
+       between(0, 232) | from_variable("ROS_DOMAIN_ID")},  // the last domain whose UDP ports exist
       {"--interface", "NAME", "Network interface of DDS: lo reaches this machine alone, auto takes the best",
        &ros.interface, kShown},
       {"--peer", "ADDRESS", "Address of a partner, where there is no multicast", &ros.peers},
@@ -108,7 +112,7 @@ Rows ros_network_rows(Options::Ros& ros) {
       {"--use-sim-time", "", "Count time by /clock, as a simulator sends it, in place of this machine's",
        &ros.is_time_simulated, without({"--simulate"})},
       {"--pace", "X", "Seconds of the simulator in a second of the clock; sends /clock", &ros.pace,
-       between(0.05, 20.0) | with("--simulate")},
+       between(run::kSlowestPace, run::kFastestPace) | with("--simulate")},
       {"--map", "FILE.yaml",
        "Occupancy map whose walls /scan sees, as map_server reads it, in place of the track's edges",
        &ros.map_file, with("--simulate")},
@@ -284,7 +288,7 @@ Rows identify_rows(Options& o) {
          "0=time,1=x",
          &identify.columns},
         {"--budget-s", "X", "End the search after so long [s]", &identify.budget_s,
-         between(1.0, 86400.0) | kShown},
+         between(1.0, 86400.0) | kShown},  // up to a day
         {"--force", "", "Write the car also where it does not predict its log", &identify.is_forced}},
        topic_rows(o),
        {json_row(o), set_row(o)}});

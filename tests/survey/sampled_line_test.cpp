@@ -24,8 +24,8 @@ TEST(SampledLine, HasEqualDistancesAndBeginsWhereTheLineDoes) {
 
 TEST(SampledLine, KnowsItsDirection) {
   const std::vector<Vec2> clockwise(kSquare.rbegin(), kSquare.rend());
-  EXPECT_DOUBLE_EQ(turned_area(kSquare), 32.0);
-  EXPECT_DOUBLE_EQ(turned_area(clockwise), -32.0);
+  EXPECT_DOUBLE_EQ(signed_area(kSquare), 16.0);
+  EXPECT_DOUBLE_EQ(signed_area(clockwise), -16.0);
 }
 
 TEST(SampledLine, TakesTheMedianOfUnorderedValues) {

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-/// A bug in our own code: stops in Debug, sanitizer and test builds, compiled out in Release. Never for input
-/// from outside.
+/// Aborts the program if `condition` is false: a bug of our own code, never an input from outside. Compiled
+/// out in Release; active in Debug, sanitizer and test builds.
 #if !defined(NDEBUG) || defined(CHICANE_ENABLE_ASSERT)
 #define CHICANE_ASSERT(condition)                                                            \
   do {                                                                                       \
@@ -19,10 +19,10 @@
 #define CHICANE_ASSERT(condition) static_cast<void>(0)
 #endif
 
-/// Kernels are written as many small functions that have to become one, whatever the compiler thinks:
-/// CHICANE_INLINE puts a function or lambda (after its parameters) into its callers, CHICANE_FLATTEN
-/// everything a function calls into it. Not in Debug nor for sanitizers, which would need minutes for one
-/// file, nor where CHICANE_NO_FORCED_INLINE is defined; the bits are the same.
+/// Forced inlining, for kernels that are written as many small functions. CHICANE_INLINE, written after the
+/// parameters of a function or lambda, inlines it into its callers; CHICANE_FLATTEN inlines all calls that a
+/// function makes. Empty in Debug and for sanitizers, which would compile one file for minutes, and with
+/// CHICANE_NO_FORCED_INLINE. Results have the same bits with and without it.
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 #define CHICANE_IS_SANITIZED

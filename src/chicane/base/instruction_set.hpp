@@ -8,8 +8,8 @@
 
 #include "chicane/base/result.hpp"
 
-// How a file uses the widest registers of the machine it runs on, without being built for that machine:
-//
+// Choice of the processor's instruction set at run time. One program has code for several of them.
+// A source file that is to be compiled for each of them takes these steps:
 //   1. Write the work as templates over an instruction set, `template <class Arch> class FastSolver : public
 //      Solver` with Pack<Arch, 8> inside, behind a small abstract interface `Solver`.
 //   2. In fast_solver.hpp: `template <class Arch> std::unique_ptr<Solver> make_fast_solver();`
@@ -18,13 +18,13 @@
 //   4. In CMakeLists.txt, after chicane_module(): `chicane_simd_sources(my_module fast_solver.cpp)`; the file
 //      is in no other list of sources. A test then proves that each object defines tagged symbols only: every
 //      function template, class and lambda in it must have Arch among its arguments or be inlined.
-//   5. Where it is made: `with_instructions(chosen_instruction_set(), [](auto arch) {
+//   5. Where a Solver is made: `with_instructions(chosen_instruction_set(), [](auto arch) {
 //      return make_fast_solver<decltype(arch)>(); })`.
 
 namespace chicane {
 
-/// Instruction sets a translation unit can be compiled for. Everything compiled for one of them carries its
-/// tag as a template argument, so that the linker never takes its code for another's.
+/// Tags of the instruction sets. Code that is compiled for one of them has its tag as a template argument, so
+/// that the linker keeps the versions apart. kWidth: doubles in a register. kFused: a · b + c rounds once.
 namespace arch {
 struct Baseline {  ///< features of every processor of the family; SSE2 on x86-64
   static constexpr std::size_t kWidth = 2;
@@ -48,7 +48,7 @@ using Native = CHICANE_ARCH;  ///< instruction set of this translation unit (cma
 using Native = Baseline;
 #endif
 
-/// The simplest instruction set that the program has code for (cmake/BuiltInstructionSets.cmake).
+/// Most widely supported instruction set in the program (cmake/BuiltInstructionSets.cmake).
 #if !defined(CHICANE_WITHOUT_BASELINE)
 using Simplest = Baseline;
 #elif defined(__aarch64__)
@@ -65,23 +65,23 @@ enum class InstructionSet : std::uint8_t { kBaseline, kAvx2, kAvx512, kNeon };
 
 [[nodiscard]] std::string_view to_string(InstructionSet set) noexcept;
 
-/// Word for the arithmetic: "fused" if a · b + c rounds once, else "plain". Instruction sets with the same
-/// word compute the same bits; a recording names it, and replays bit by bit on any machine that has it.
+/// Rounding of a · b + c: "fused" if it rounds once, "plain" if twice. Instruction sets with the same word
+/// compute the same bits. A recording names its word, and replays bit for bit on any machine with that word.
 [[nodiscard]] std::string_view arithmetic(InstructionSet set) noexcept;
 
 /// Whether this processor has the instruction set.
 [[nodiscard]] bool is_supported(InstructionSet set) noexcept;
-/// Whether the program has code for the instruction set: for all of the family, unless CHICANE_SIMD was given
-/// to CMake.
+/// Whether the program has code for the instruction set. CMake builds all sets of the processor family, or
+/// the ones that its option CHICANE_SIMD names.
 [[nodiscard]] bool is_built(InstructionSet set) noexcept;
 /// Whether the instruction set can be chosen: is_supported() and is_built().
 [[nodiscard]] bool is_available(InstructionSet set) noexcept;
 /// Names of the instruction sets with code in the program: "baseline, avx2, avx512".
 [[nodiscard]] std::string built_instruction_sets();
-/// Names of the instruction sets of the family without code in the program; may be empty.
+/// Names of the processor family's instruction sets without code in the program; may be empty.
 [[nodiscard]] std::string instruction_sets_left_out();
 
-/// The best available instruction set. Without one the simplest built one, which must not be run.
+/// Best available instruction set. If none is available, one that is built, whose code must not be run.
 [[nodiscard]] InstructionSet detect_instruction_set() noexcept;
 
 /// The instruction set "baseline", "avx2", "avx512" or "neon". Fails for other names, and for one that this
@@ -91,17 +91,17 @@ enum class InstructionSet : std::uint8_t { kBaseline, kAvx2, kAvx512, kNeon };
 /// Advice for users of a set that was left out: "In a clone `CHICANE_SIMD=avx2 ./run.sh` adds it; ...".
 [[nodiscard]] std::string how_to_build(std::string_view name);
 
-/// Instruction set of solvers made from now on: the last choice, else the environment's CHICANE_SIMD, else
-/// the best one. A CHICANE_SIMD that is not available counts as "baseline", or the best where that was not
-/// built: programs refuse it at their start with environment_instruction_set().
+/// Instruction set of solvers made from now on: the last choice, else CHICANE_SIMD of the environment, else
+/// the best one. An unavailable CHICANE_SIMD is replaced by "baseline", or by the best one if baseline is not
+/// built; programs refuse it at their start by environment_instruction_set().
 [[nodiscard]] InstructionSet chosen_instruction_set() noexcept;
-/// Chooses for the whole process; for replays and tests. Any thread may call it. Pre: is_available(set).
+/// Sets the choice of the whole process; for replays and tests. Any thread. Pre: is_available(set).
 void choose_instruction_set(InstructionSet set) noexcept;
 /// Instruction set that CHICANE_SIMD names; if it is not set, the best one. Fails like
 /// instruction_set_by_name(), and if none is available.
 [[nodiscard]] Result<InstructionSet> environment_instruction_set();
 
-/// Calls f with the tag of `set`; sets of other families of processors, and those left out, are not compiled.
+/// Calls f with the tag of `set`. Sets that are not built are not compiled here, either.
 /// Pre: is_available(set).
 template <class F>
 auto with_instructions(InstructionSet set, F&& f) {

@@ -14,7 +14,7 @@ namespace chicane {
 struct SineCosine {
   double sine, cosine;
 };
-[[nodiscard]] SineCosine sine_cosine(double x) noexcept;  ///< the bits of sin and cos, for the time of one
+[[nodiscard]] SineCosine sine_cosine(double x) noexcept;  ///< same bits as sin and cos, in the time of one
 [[nodiscard]] double tan(double x) noexcept;              ///< sin / cos: error up to 2 ulp
 [[nodiscard]] double atan(double x) noexcept;             ///< all x
 [[nodiscard]] double atan2(double y, double x) noexcept;
@@ -27,15 +27,15 @@ struct SineCosine {
 /// < 0, relative error about (2 + |exponent · log(x)|) ulp.
 [[nodiscard]] double pow(double x, double exponent) noexcept;
 
-/// IEEE 754 prescribes the bits of these.
+/// Functions whose bits IEEE 754 prescribes. hypot is infinite from 1.3e154 on.
 [[nodiscard]] inline double sqrt(double x) noexcept { return std::sqrt(x); }
 [[nodiscard]] inline double abs(double x) noexcept { return std::fabs(x); }
 [[nodiscard]] inline double hypot(double x, double y) noexcept { return std::sqrt(x * x + y * y); }
 
-/// The plain number: packs and jets have the value that is in them.
+/// The number itself. Templates over any scalar call value_of(), which packs and symbols overload.
 [[nodiscard]] constexpr double value_of(double x) noexcept { return x; }
 
-/// Choices as functions, so that code over any scalar needs no branch: the same names work on packs and jets.
+/// Choices as functions: templates over packs and jets, which cannot branch, call them by the same names.
 [[nodiscard]] constexpr double select(bool chosen, double a, double b) noexcept { return chosen ? a : b; }
 [[nodiscard]] constexpr double max(double a, double b) noexcept { return a > b ? a : b; }
 [[nodiscard]] constexpr double min(double a, double b) noexcept { return a < b ? a : b; }
@@ -44,14 +44,14 @@ struct SineCosine {
 inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr double kTwoPi = 2.0 * kPi;
 
-/// The same angle in (-π, π]. Pre: |angle| < 1e6 rad.
+/// The angle, brought into (-π, π] by whole turns. Pre: |angle| < 1e6 rad.
 [[nodiscard]] inline double wrap_angle(double angle) noexcept {
   if (angle > -kPi && angle <= kPi) return angle;
   const double turned = angle - kTwoPi * std::floor((angle + kPi) / kTwoPi);
   return turned <= -kPi ? turned + kTwoPi : turned;
 }
 
-/// Shortest way from `from` to `to`, counter-clockwise positive, in (-π, π].
+/// Shortest turn from `from` to `to`, counter-clockwise positive, in (-π, π].
 [[nodiscard]] inline double angle_difference(double to, double from) noexcept {
   return wrap_angle(to - from);
 }
@@ -59,8 +59,8 @@ inline constexpr double kTwoPi = 2.0 * kPi;
 [[nodiscard]] constexpr double degrees_to_radians(double degrees) noexcept { return degrees * (kPi / 180.0); }
 [[nodiscard]] constexpr double radians_to_degrees(double radians) noexcept { return radians * (180.0 / kPi); }
 
-/// 1 mph = 0.44704 m/s exactly. The simulator itself multiplies m/s by 2.23693629; its codec uses that
-/// number.
+/// 1 mph = 0.44704 m/s by definition. Udacity's simulator rounds the inverse to 2.23693629, which its codec
+/// and its car use.
 [[nodiscard]] constexpr double mph_to_mps(double mph) noexcept { return mph * 0.44704; }
 [[nodiscard]] constexpr double mps_to_mph(double mps) noexcept { return mps / 0.44704; }
 

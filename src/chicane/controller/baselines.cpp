@@ -22,7 +22,7 @@ struct View {
   double elapsed;  ///< time since the previous step [s], 0 if unknown
 };
 
-/// A curve through waypoints; skips those that are not finite or repeat the one before.
+/// Curve through the measured waypoints. Skips points that are not finite or repeat the one before.
 class WaypointLine {
  public:
   [[nodiscard]] bool see(const model::Measurement& now) noexcept {
@@ -43,8 +43,8 @@ class WaypointLine {
   std::array<Vec2, model::Measurement::kMaxWaypoints> points_{};
 };
 
-/// All that the baselines share: the line, the speed, the report. `Law` steers: double steer(const View&),
-/// void configure(const Options&, const VehicleParams&), void reset().
+/// Controller of one steering law, with line, speed and report as in all baselines. `Law` has Options,
+/// double steer(const View&), void configure(const Options&, const VehicleParams&) and void reset().
 template <class Law>
 class Baseline final : public CopyableController<Baseline<Law>>, public Tunable<typename Law::Options> {
  public:
@@ -94,6 +94,7 @@ class Baseline final : public CopyableController<Baseline<Law>>, public Tunable<
            std::isfinite(now.psi) && std::isfinite(now.speed);
   }
 
+  /// Time since the last step [s]; 0 for a first step, and for a pause of a second or more.
   double elapsed(double time) noexcept {
     const double since = has_time_ ? time - last_time_ : 0.0;
     last_time_ = time;
@@ -141,7 +142,7 @@ class Baseline final : public CopyableController<Baseline<Law>>, public Tunable<
     return result_;
   }
 
-  static constexpr int kReferencePoints = 32;  // points of the shown line
+  static constexpr int kReferencePoints = 32;  // points of the line that viewers draw; chosen
 
   std::string_view name_;
   Law law_;
@@ -287,9 +288,9 @@ constexpr auto kStanleyOptions = with_speed_hold<&StanleyOptions::speed>(std::ar
         "Added to the speed so that the gain stays finite near standstill."),
 });
 
-constexpr double kComfortableBraking = 3.0;  ///< assumed on the way to a curve [m/s²]
-constexpr double kSampleSpacing = 2.0;       ///< spacing of curvature samples ahead [m]
-constexpr int kMaxSamples = 100;             ///< limit of these samples
+constexpr double kComfortableBraking = 3.0;  // [m/s²] assumed before a curve; chosen
+constexpr double kSampleSpacing = 2.0;       // [m] between samples of the curvature ahead; chosen
+constexpr int kMaxSamples = 100;             // limit of these samples: 200 m
 
 }  // namespace
 

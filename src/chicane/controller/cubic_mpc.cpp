@@ -20,11 +20,12 @@
 namespace chicane::controller {
 namespace {
 
-constexpr int kMaxIterations =
-    100;  ///< one solve in thousands needs more than 40: a cubic far beyond the waypoints
-constexpr int kReferencePoints = 32;
+// Limit of iterations. One solve in thousands needs more than 40: when the cubic reaches far beyond the
+// waypoints.
+constexpr int kMaxIterations = 100;
+constexpr int kReferencePoints = 32;  // points of the line that viewers draw; chosen
 
-/// The speed that the roll-forward takes for 1 m/s.
+/// Factor of the speed in the roll-forward: a write-up may take miles per hour for metres per second.
 double rolled_unit(const CubicMpcOptions& options) noexcept {
   return options.roll_forward_in_mph ? mps_to_mph(1.0) : 1.0;
 }
@@ -50,8 +51,8 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
     if (!is_finite(now)) return no_answer(now);
     start_ = roll_forward_.predict(now);  // state when the command acts
     start_time_ = now.time + roll_forward_.compensated();
-    if (!see_line(now)) return no_answer(now);  // the waypoints from there, as a cubic
-    shift_warm_start();                         // the last answer, moved on by the time since
+    if (!see_line(now)) return no_answer(now);  // waypoints from that state, as a cubic
+    shift_warm_start();                         // last answer, moved on by the elapsed time
     solve(now, deadline);
     if (!usable(result_.report.solve.status)) return no_answer(now);
     return accept();
@@ -114,7 +115,7 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
     return true;
   }
 
-  /// State in the car's own frame: the car stands at the origin; equations 8 and 9 give the errors there.
+  /// First state of the horizon, in the car's own frame with the car at the origin (equations 8 and 9).
   [[nodiscard]] CubicProblem::State initial_state(const model::Measurement& now) const noexcept {
     return {0.0,
             0.0,

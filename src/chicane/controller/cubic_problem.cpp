@@ -11,7 +11,8 @@ namespace {
 constexpr std::size_t kRows = model::Measurement::kMaxWaypoints;
 constexpr std::size_t kColumns = 4;
 
-/// Share of its length that a column must keep after the columns before it; below it adds no information.
+/// Least length of a column after elimination of the columns before it, share of its own: a shorter one adds
+/// no information.
 constexpr double kRankTolerance = 1e-9;
 
 template <class Convert>
@@ -26,7 +27,7 @@ LocalPoints convert(const model::Measurement& now, const model::Pose& car, const
   return local;
 }
 
-/// The powers 1, t, t², t³ of the points' x (columns) with their y, turned row by row into R c = Qᵀ y.
+/// Least squares of y = c0 + c1 t + c2 t² + c3 t³ over points, by Householder QR: R c = Qᵀ y.
 class LeastSquares {
  public:
   explicit LeastSquares(int order) noexcept : used_columns_{static_cast<std::size_t>(order) + 1} {}
@@ -140,9 +141,9 @@ bool fit_cubic(std::span<const Vec2> points, Cubic& fit, int order) noexcept {
 
 namespace {
 
-/// No answer is half a second late: beyond it a measurement of the loop time says more about the clock than
-/// about the loop.
-constexpr double kMaxLatency = 0.5;  // [s]
+/// Largest latency that is accepted from a measurement of the loop time [s]: beyond it the clock is wrong,
+/// not the loop late. Chosen.
+constexpr double kMaxLatency = 0.5;
 
 }  // namespace
 

@@ -24,19 +24,20 @@ using Prediction = tracking::StateEstimator::Prediction;
 using StageState = std::array<double, Problem::kNx>;
 using StageInput = std::array<double, Problem::kNu>;
 
-constexpr int kMostIterations = TrackingMpcOptions::kMostIterations;  // from a new guess, or with more time
+// docs/controller.md explains these where nothing else is named; "chosen" has no other reason.
+constexpr int kMostIterations = TrackingMpcOptions::kMostIterations;  // of a new guess, or of a late step
 constexpr int kRacingIterations = 30;  // original curve of tyres, in a race (docs/limit.md, "The solver")
-constexpr double kTimePerIteration = 0.04;  // [s] that a step must come later for one more iteration
-constexpr double kFarFromLine = 15.0;       // [m] further away it returns to the road
-constexpr double kLost = 100.0;             // [m] further away it does not return by itself
-constexpr double kSlow = 6.0;               // [m/s] below which it may turn round
-constexpr double kJoining = 0.2;            // [rad] to the road at which a car that returns has joined it
-constexpr double kSpeedAhead = 4.0;         // [m/s] largest speed demand above the last answer's reach
+constexpr double kTimePerIteration = 0.04;  // [s] lateness of a step for one more iteration
+constexpr double kFarFromLine = 15.0;       // [m] a car further away returns to the road; chosen
+constexpr double kLost = 100.0;             // [m] a car further away does not return; docs/safety.md
+constexpr double kSlow = 6.0;               // [m/s] a slower car may turn round on the road; chosen
+constexpr double kJoining = 0.2;            // [rad] heading error at which a returning car has joined; chosen
+constexpr double kSpeedAhead = 4.0;         // [m/s] largest speed demand above the last answer's speed
 constexpr double kSteadySpeed = 25.0;  // [m/s] from which on the weight on the steering rate grows as v²
-constexpr double kLongestHold = 0.3;   // [s] the first command is assumed to be held at most this long
-constexpr double kBlindAfter = 0.3;    // [s] without a measurement, or a waypoint: stop
-constexpr double kPreview = 0.3;       // [s] the car answers the wheel about so late
-constexpr double kCrawl = 3.0;  // [m/s] below it the fallback brings the car to rest, and no plan races
+constexpr double kLongestHold = 0.3;   // [s] longest assumed hold of the first command; chosen
+constexpr double kBlindAfter = 0.3;    // [s] without measurement, waypoint or answer; docs/guard.md, eq. 15
+constexpr double kPreview = 0.3;       // [s] about the lag from steering wheel to course; chosen
+constexpr double kCrawl = 3.0;         // [m/s] below it the fallback stops the car, and no plan races; chosen
 
 class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable<TrackingMpcOptions> {
  public:
@@ -77,7 +78,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     const solver::SolveReport report = solver_->solve(problem_, x0_, horizon_, iterations_, deadline);
     result_.report.solve_time = deadline.elapsed() - started;
     result_.report.solve = report;
-    // A guess that was never improved is no answer, however well it went before.
+    // A guess without a single iteration is no answer.
     const bool is_guess = report.status == solver::SolveStatus::kBudgetSpent && report.iterations == 0;
     late_.note(!is_guess, now.time);
     if (is_guess && late_.is_long && start.state.vx > kCrawl) return stop_on_road(start);
@@ -154,19 +155,20 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
                        .jerk = std::sqrt(options_.weight_jerk),
                        .edge = std::sqrt(options_.weight_edge),
                        .slip = std::sqrt(options_.weight_slip),
-                       .excess_steer_rate = 40.0,
+                       .excess_steer_rate = 40.0,  // root of the weight; chosen
                        .friction = std::sqrt(options_.weight_slip)};
     shape_edges();
   }
 
-  /// Raced by a planned lap, the axles stay inside the road's edges; else the mass, inside an assumed width.
+  /// Parts of the car that stay on the road: the axles inside the real edges on a planned lap, otherwise the
+  /// centre of mass inside an assumed width.
   void shape_edges() noexcept {
     problem_.nose = road_.is_raced() ? model_.vehicle().front_axle : 0.0;
     problem_.tail = road_.is_raced() ? model_.vehicle().rear_axle : 0.0;
     slips_ = road_.is_raced() ? road_.lap()->slips() : road::RacingRoad::Slips{};
   }
 
-  /// A planned lap begins to be raced by, or ends.
+  /// Adapts estimator and model to the beginning or end of a race by a planned lap.
   void shape_raced() noexcept {
     has_horizon_ = false;
     const bool races = road_.is_raced() || options_.learns();
@@ -175,8 +177,9 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     configure_model();
   }
 
-  /// Model, road and problem for options, vehicle and grip. What is driven at by a plan is in that plan;
-  /// without one, a car that has not shown its grip is driven with little of it, at most the configured one.
+  /// Sets model, road and problem by options, vehicle and grip. The road's speeds count with the estimated
+  /// grip, at most the configured one; with little grip before the tyres have shown any, unless a planned lap
+  /// gives the speeds.
   void configure_model() noexcept {
     const model::VehicleParams car = model::with_grip(configured_, grip_.share());
     model_.set_vehicle(car);
@@ -262,7 +265,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   /// Prepares the problem of this step and its first guess: the last answer, shifted by the elapsed time, or
   /// without one the motion by a path-following law.
   void prepare(double act_time) noexcept {
-    problem_.model = &model_;  // here, so that a copy asks its own
+    problem_.model = &model_;  // set in each step, so that a copied controller uses its own model
     const double elapsed = act_time - act_time_;
     const bool can_shift =
         has_horizon_ && elapsed >= 0.0 && elapsed < 0.5 * (old_first_ + (horizon_.horizon - 1) * old_step_);
@@ -287,7 +290,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     old_step_ = step;
   }
 
-  /// The last answer `elapsed` [s] later; its states say where to ask the road.
+  /// Makes the last answer, `elapsed` [s] later, the first guess, and reads the road at its states.
   void shift_answer(double elapsed) noexcept {
     old_ = horizon_;
     const double last = old_.horizon;
@@ -386,7 +389,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     return result_;
   }
 
-  /// No time to solve, and the last plan is old: the wheel by feedback to the line, all useful braking.
+  /// Stops without a solution, when the last plan is old: steers by feedback to the line, brakes fully.
   const StepResult& stop_on_road(const Prediction& start) noexcept {
     const model::VehicleParams& car = model_.vehicle();
     const int ahead = std::min(static_cast<int>(kPreview / options_.step_length), options_.horizon_steps - 1);
@@ -404,7 +407,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     return result_;
   }
 
-  /// A car that has spun, or is far from its line: it brakes first, then drives back at walking pace.
+  /// Leads back a car that has spun, or is far from its line: no answer until it is slow, then walking pace.
   const StepResult& return_to_road(const model::Measurement& now, const Prediction& start,
                                    double act_time) noexcept {
     const road::ReferenceLine& line = this->line();
@@ -451,8 +454,8 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   }
 
   TrackingMpcOptions options_;
-  model::VehicleParams configured_;  ///< its grip may differ from the model's
-  model::PredictionModel model_;
+  model::VehicleParams configured_;
+  model::PredictionModel model_;  ///< configured_ with the estimated grip
   SlipReserve reserve_;
   LearnedGrip grip_{model_};
   road::DrivenRoad road_;
@@ -461,24 +464,24 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   road::RacingRoad::Slips slips_;  ///< slips that a raced lap was planned with
   Problem problem_;
   Owned<tracking::TrackingSolver> solver_;
-  Horizon horizon_;  ///< the last answer, then the guess, then the new answer
-  Horizon old_;
-  StageState x0_{};
+  Horizon horizon_;  ///< in a step: first the last answer, then the guess, then the new answer
+  Horizon old_;      ///< copy of the last answer in shift_answer()
+  StageState x0_{};  ///< state where the command acts
   tracking::Disturbance disturbance_;  ///< estimated where the command acts
   StepResult result_;
-  double s_ = 0.0;  ///< arc length on the line where the command acts
-  double act_time_ = 0.0;
+  double s_ = 0.0;                    ///< arc length on the line where the command acts [m]
+  double act_time_ = 0.0;             ///< time at which the last answer begins [s]
   double sent_time_ = 0.0;            ///< time from which the last command acts [s]
   double old_first_ = 0.0;            ///< length of the first stage of the last answer [s]
   double old_step_ = 0.0;             ///< step of its other stages [s]
   int iterations_ = kMostIterations;  ///< iterations of the solver in this step
-  unsigned revision_ = 0;
-  bool has_place_ = false;
-  bool has_horizon_ = false;
-  bool is_returning_ = false;      ///< on the way to the road, and has not joined it yet
-  Absence blind_{kBlindAfter};     ///< no measurements that locate the car
-  Absence roadless_{kBlindAfter};  ///< no waypoints
-  Absence late_{kBlindAfter};      ///< no answers, for want of time
+  unsigned revision_ = 0;             ///< number of the road's line that s_ refers to
+  bool has_place_ = false;            ///< s_ is valid
+  bool has_horizon_ = false;          ///< horizon_ holds the last answer
+  bool is_returning_ = false;         ///< on the way to the road, and has not joined it yet
+  Absence blind_{kBlindAfter};        ///< no measurements that locate the car
+  Absence roadless_{kBlindAfter};     ///< no waypoints
+  Absence late_{kBlindAfter};         ///< no answers, for want of time
 };
 
 }  // namespace

@@ -24,12 +24,13 @@
 namespace chicane::identify {
 namespace {
 
-/// Quantity of a column.
+/// Quantity that a column of a CSV file may hold.
 enum Quantity { kTime, kX, kY, kPsi, kSpeed, kYawRate, kSteer, kThrottle, kQuantities };
 
+/// Names of a quantity's column, without units.
 struct Meaning {
   std::string_view name;
-  std::array<std::string_view, 5> others;  ///< names that mean the same
+  std::array<std::string_view, 5> others;  ///< other names of the same quantity
   bool is_needed;
 };
 constexpr Meaning kMeanings[kQuantities] = {
@@ -43,6 +44,7 @@ constexpr Meaning kMeanings[kQuantities] = {
     {"throttle", {"pedal", "", "", "", ""}, false},
 };
 
+/// Unit at the end of a column's name, and its factor to SI.
 struct Suffix {
   std::string_view end;
   double factor;
@@ -58,7 +60,7 @@ struct Column {
   double factor = 1.0;
 };
 
-/// A name without its unit, and the factor of the unit.
+/// Name of a column without its unit, and the factor of the unit.
 std::pair<std::string, double> parted(std::string_view name) {
   const std::string lower = protocol::lower(name);
   for (const Suffix& suffix : kSuffixes) {
@@ -159,11 +161,13 @@ Result<LogRows> read_csv_rows(const std::string& text, const std::string& file, 
 
 namespace {
 
-constexpr double kLongestGap = 0.5;   ///< [s]
-constexpr double kShortestLog = 2.0;  ///< [s]
-constexpr double kStretch = 0.2;      ///< [s] over which signals are compared at least
+// The limits here were chosen.
+constexpr double kLongestGap = 0.5;   // [s] a longer gap between samples begins another part
+constexpr double kShortestLog = 2.0;  // [s] a shorter part is left out
+constexpr double kStretch = 0.2;      // [s] least duration of a stretch in which signals are compared
 
-/// Parts in which time increases, without gaps and jumps; yaw is unwrapped, samples of one time count once.
+/// Parts of a log between gaps and jumps, with increasing time. Yaw is unwrapped; of samples with one time
+/// the first is kept.
 std::vector<DriveLog> parts_of(LogRows rows, const std::string& file) {
   const auto earlier = [](const auto& a, const auto& b) { return a.time < b.time; };
   std::vector<DriveLog> parts;
@@ -171,12 +175,12 @@ std::vector<DriveLog> parts_of(LogRows rows, const std::string& file) {
   DriveLog part = empty;
   std::vector<SentCommand> commands = rows.commands;
   std::stable_sort(commands.begin(), commands.end(), earlier);
-  // Odometry has a place for the yaw rate also where nothing measures it: 0 throughout is none.
+  // A yaw rate of 0 throughout is not measured: odometry messages have the field in any case.
   const bool has_yaw_rate = std::any_of(rows.samples.begin(), rows.samples.end(),
                                         [](const Sample& each) { return each.yaw_rate != 0.0; });
   const auto finish = [&] {
     if (!part.samples.empty() && part.samples.back().time - part.samples.front().time >= kShortestLog) {
-      // Commands from a second before, which may act still.
+      // Commands of the second before may still act.
       const auto from = std::lower_bound(commands.begin(), commands.end(),
                                          SentCommand{.time = part.samples.front().time - 1.0}, earlier);
       const auto to = std::upper_bound(commands.begin(), commands.end(),
@@ -208,15 +212,15 @@ std::vector<DriveLog> parts_of(LogRows rows, const std::string& file) {
   return parts;
 }
 
-/// Sums over all parts: how far signals agree that have to. By stretches that are long against the noise of a
-/// place, which lengthens a path from sample to sample.
+/// Sums over all parts that show whether the signals agree with the path. Counted over stretches of kStretch,
+/// because the noise of single places would lengthen the path.
 struct Agreement {
-  double path = 0.0, speed_path = 0.0;  ///< driven by place, and by speed [m]
+  double path = 0.0, speed_path = 0.0;  ///< length of the path by the places, and by the speed [m]
   double along = 0.0;                   ///< path in the direction of yaw [m]
   double turned_right = 0.0,
          turned_left = 0.0;                      ///< turning of the path, against yaw's and with it [rad]
   double steer_with = 0.0, steer_against = 0.0;  ///< steering with the turning, and against it [rad s]
-  double most_steer = 0.0;                       ///< [rad]
+  double most_steer = 0.0;                       ///< largest steering [rad]
 
   void look_at(const DriveLog& log) {
     std::size_t command = 0;

@@ -20,15 +20,16 @@
 namespace chicane::identify {
 namespace {
 
-constexpr double kWindow = 5.0;            ///< length of a window for a car in full size [s]
-constexpr double kSeen = 0.5;              ///< samples from which a prediction starts [s]
-constexpr double kLeastSpeed = 3.0;        ///< in full size: below it tyres creep and brakes hold [m/s]
-constexpr std::size_t kMostWindows = 400;  ///< limit of windows in the fit
-constexpr int kRoughSteps = 12;            ///< steps of the rough round
-constexpr double kRoughAccuracy = 3e-2,
-                 kAccuracy = 1e-3;  ///< in deviations of the prior: an interval is a tenth of one
-constexpr double kMoreGrip = 0.4;   ///< logarithm of the first guess of the friction over the assumed one
-constexpr std::size_t kFewWindows = 12;  ///< windows of the first, rough round
+constexpr double kWindow = 5.0;            // [s] length of a window; times and speeds are of full-size cars
+constexpr double kSeen = 0.5;              // [s] samples from which a prediction starts
+constexpr double kLeastDriving = 10.0;     // [s] of windows, for a fit
+constexpr double kLeastSpeed = 3.0;        // [m/s] below it tyres creep and brakes hold
+constexpr std::size_t kMostWindows = 400;  // limit of windows in the fit
+constexpr std::size_t kFewWindows = 12;    // the same of a rough search
+constexpr int kRoughSteps = 12;            // steps of a rough search
+constexpr double kRoughAccuracy = 3e-2;    // accuracy of all rounds but the last, in deviations of the prior
+constexpr double kAccuracy = 1e-3;         // the same of the last round: intervals are about a tenth of it
+constexpr double kMoreGrip = 0.4;          // logarithm of the friction's first guess over its prior
 
 /// Estimated number: where it is stored in a car in full size, and its prior.
 struct Row {
@@ -172,8 +173,7 @@ void look_back(const std::vector<DriveLog>& logs, const std::vector<Window>& win
   const model::PredictionModel model(car.vehicle);
   std::array<std::vector<double>, 2> uses;
   std::vector<Expected> expected;
-  std::vector<Actuators> actuators;
-  for (const DriveLog& log : logs) actuators.emplace_back(log, car);
+  const std::vector<Actuators> actuators = actuators_of(logs, car);
   for (const Window& window : windows) {
     drive(car, logs[window.log], actuators[window.log], window.first, window.last, window.start, expected);
     for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -200,8 +200,7 @@ std::vector<PredictedStretch> predict(const std::vector<DriveLog>& logs, std::ve
                                       const Car& car, const Noise& noise,
                                       const model::Similarity& similarity) {
   std::vector<PredictedStretch> stretches;
-  std::vector<Actuators> actuators;
-  for (const DriveLog& log : logs) actuators.emplace_back(log, car);
+  const std::vector<Actuators> actuators = actuators_of(logs, car);
   std::vector<Expected> expected;
   for (Window& window : windows) {
     const std::vector<Sample>& samples = logs[window.log].samples;
@@ -269,6 +268,89 @@ void thin(std::vector<Window>& windows, std::size_t most) {
   }
 }
 
+/// Stretches of logs, the numbers to estimate from them, and the noise; all in full size.
+struct Task {
+  const std::vector<DriveLog>& logs;
+  const IdentifyOptions& options;
+  std::vector<Window> windows{}, held_out{};  ///< stretches to fit, and to predict
+  std::vector<Row> rows{};
+  Prior prior{};
+  Noise noise{0.055, 0.055, 0.005, 0.1, 0.02};  ///< first guess; each round of the fit renews it
+};
+
+/// Fits the windows in rounds. Each takes the residuals of the one before as noise; the first is rough.
+WindowFit fit_in_rounds(Task& task) {
+  const bool is_rough = task.options.is_rough;
+  const Noise least{1e-3, 1e-3, 2e-4, 5e-3, 1e-3};
+  // The first round fixes the limit of the steering's rate at a high value. One that is assumed too low
+  // explains every bend wrongly, one that is too high changes nothing.
+  Prior first = task.prior;
+  WindowFit fit;
+  fit.theta = first.mean;
+  for (std::size_t i = 0; i < task.rows.size(); ++i) {
+    // With too little grip the car spins in the model, and no step helps; with too much it only slips less.
+    if (task.rows[i].key == "friction") fit.theta[i] += kMoreGrip;
+    if (task.rows[i].key != "steer_rate_limit_degps") continue;
+    fit.theta[i] = first.mean[i] += 1.5;  // its logarithm
+    first.deviation[i] = 0.01;
+  }
+  const int rounds = is_rough ? 1 : 3;
+  bool goes_on = true;
+  int round = 0;
+  for (; round < rounds && goes_on; ++round) {
+    int step = 0;
+    const auto search = [&](std::vector<Window>& starts, const std::vector<double>& from) {
+      return fit_windows(task.logs, starts, round == 0 ? first : task.prior, from, task.noise,
+                         round + 1 < rounds ? kRoughAccuracy : kAccuracy, [&] {
+                           goes_on = task.options.progress((round + std::min(1.0, 0.07 * step)) / rounds);
+                           return goes_on && (step++ < kRoughSteps || !is_rough);
+                         });
+    };
+    // In the first round the lag stands for a limited rate of the steering. So the second one also starts
+    // from the prior's steering, and keeps the better fit.
+    std::vector<Window> others = task.windows;
+    std::vector<double> other = fit.theta;
+    for (std::size_t i = 0; i < task.rows.size(); ++i)
+      if (task.rows[i].key.starts_with("steer_") || task.rows[i].key == "latency_ms")
+        other[i] = task.prior.mean[i];
+    fit = search(task.windows, fit.theta);
+    if (WindowFit again; round == 1 && goes_on && (again = search(others, other)).loss < fit.loss) {
+      fit = std::move(again);
+      task.windows = std::move(others);
+    }
+    // Use one deviation for both directions of the place.
+    fit.residual[0] = fit.residual[1] = std::max(fit.residual[0], fit.residual[1]);
+    for (std::size_t kind = 0; kind < least.size(); ++kind)
+      task.noise[kind] = std::max(fit.residual[kind], least[kind]);
+  }
+  for (std::size_t i = 0; i < first.mean.size() && round < 2 && !goes_on; ++i) {
+    if (first.deviation[i] == task.prior.deviation[i]) continue;  // fixed in the first round: not estimated
+    fit.theta[i] = task.prior.mean[i];
+    fit.deviation[i] = task.prior.deviation[i];
+  }
+  return fit;
+}
+
+/// Adds the estimates of the actual car, with intervals of two deviations.
+void add_estimates(const Task& task, const WindowFit& fit, Identification& found) {
+  for (std::size_t i = 0; i < task.rows.size(); ++i) {
+    const Row& row = task.rows[i];
+    const double deviation = hypot(fit.deviation[i], row.model_error);
+    const auto outside = [&](double theta) {
+      return row.unit.from_si(value_of(row, theta) * row.per_full_size);
+    };
+    found.estimates.push_back({row.key, std::string(row.unit.name), outside(fit.theta[i]),
+                               outside(fit.theta[i] - 2.0 * deviation),
+                               outside(fit.theta[i] + 2.0 * deviation), outside(task.prior.mean[i]),
+                               deviation < 0.4 * task.prior.deviation[i]});
+    Estimate& each = found.estimates.back();
+    if (each.key == "latency_ms")
+      for (double* number : {&each.value, &each.low, &each.high}) *number = std::max(0.0, *number);
+    // The beginning of the curve says little about its peak.
+    if (each.key == "friction" && !found.knows_tires()) each.is_excited = false;
+  }
+}
+
 /// Identifies a car in full size; `logs` are in full size, `configured` is the car in its own size.
 Result<Identification> identify_full_size(const std::vector<DriveLog>& logs,
                                           const model::VehicleParams& configured,
@@ -278,106 +360,44 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs,
   Wheels wheels = options.wheels;
   wheels.relaxation *= similarity.length();
   wheels.load_lag *= similarity.time();
-  std::vector<Window> windows, held_out;
+  Task task{.logs = logs, .options = options};
   Identification found;
-  bool has_pedal = !logs.empty();
   bool is_centre_of_mass = true;
   for (std::size_t i = 0; i < logs.size(); ++i) {
     const double from = logs[i].samples.front().time, to = logs[i].samples.back().time;
     const double split = to - options.hold_out * (to - from);
-    add_windows(logs, i, from, split, kWindow, kLeastSpeed, windows);
-    add_windows(logs, i, split, to, kSeen + 3.3, kLeastSpeed, held_out);
+    add_windows(logs, i, from, split, kWindow, kLeastSpeed, task.windows);
+    add_windows(logs, i, split, to, kSeen + 3.3, kLeastSpeed, task.held_out);  // errors up to 3 s ahead
     found.driven += (to - from) / similarity.time();
-    has_pedal = has_pedal && logs[i].has_throttle();
+    found.has_pedal = found.has_pedal && logs[i].has_throttle();
     is_centre_of_mass = is_centre_of_mass && logs[i].is_centre_of_mass;
   }
-  const double to_fit = static_cast<double>(windows.size()) * kWindow;
-  thin(windows, options.is_rough ? kFewWindows : kMostWindows);
-  if (to_fit < 10.0)
+  const double to_fit = static_cast<double>(task.windows.size()) * kWindow;
+  thin(task.windows, options.is_rough ? kFewWindows : kMostWindows);
+  if (to_fit < kLeastDriving)
     return fail(ErrorCode::kInvalidArgument,
                 fmt::format("logs: got {:.0f} s of driving to fit, expected at least {:.3g} s",
-                            to_fit / similarity.time(), 10.0 / similarity.time()));
-  std::vector<Row> rows = rows_for(start, wheels, has_pedal, is_centre_of_mass);
-  for (Row& row : rows) row.per_full_size = per_full_size(row.unit.name, similarity);
-  const Prior prior = prior_of(rows, start, wheels);
-  Noise noise{0.055, 0.055, 0.005, 0.1, 0.02};
-  const Noise least{1e-3, 1e-3, 2e-4, 5e-3, 1e-3};
-  // A limit assumed too low explains every bend wrongly, one that is too high changes nothing: the
-  // first round has a high one.
-  Prior first = prior;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i].key != "steer_rate_limit_degps") continue;
-    first.mean[i] += 1.5;
-    first.deviation[i] = 0.01;
-  }
-  WindowFit fit;
-  fit.theta = first.mean;
-  // With too little grip the car spins in the model, and no step helps; with too much it only slips less.
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    if (rows[i].key == "friction") fit.theta[i] += kMoreGrip;
-  const int rounds = options.is_rough ? 1 : 3;
-  bool goes_on = true;
-  int round = 0;
-  for (; round < rounds && goes_on; ++round) {
-    int step = 0;
-    const auto search = [&](std::vector<Window>& starts, const std::vector<double>& from) {
-      return fit_windows(logs, starts, round == 0 ? first : prior, from, noise,
-                         round + 1 < rounds ? kRoughAccuracy : kAccuracy, [&] {
-                           goes_on = options.progress((round + std::min(1.0, 0.07 * step)) / rounds);
-                           return goes_on && (step++ < kRoughSteps || !options.is_rough);
-                         });
-    };
-    // Where the rate of the steering is limited, the first round's lag stands for that limit.
-    std::vector<Window> others = windows;
-    std::vector<double> other = fit.theta;
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      if (rows[i].key.starts_with("steer_") || rows[i].key == "latency_ms") other[i] = prior.mean[i];
-    fit = search(windows, fit.theta);
-    if (WindowFit again; round == 1 && goes_on && (again = search(others, other)).loss < fit.loss) {
-      fit = std::move(again);
-      windows = std::move(others);
-    }
-    // Use one deviation for both directions of the place.
-    fit.residual[0] = fit.residual[1] = std::max(fit.residual[0], fit.residual[1]);
-    for (std::size_t kind = 0; kind < noise.size(); ++kind)
-      noise[kind] = std::max(fit.residual[kind], least[kind]);
-  }
-  for (std::size_t i = 0; i < rows.size() && round < 2 && !goes_on; ++i) {
-    if (first.deviation[i] == prior.deviation[i]) continue;  // fixed in the first round: not estimated
-    fit.theta[i] = prior.mean[i];
-    fit.deviation[i] = prior.deviation[i];
-  }
+                            to_fit / similarity.time(), kLeastDriving / similarity.time()));
+  task.rows = rows_for(start, wheels, found.has_pedal, is_centre_of_mass);
+  for (Row& row : task.rows) row.per_full_size = per_full_size(row.unit.name, similarity);
+  task.prior = prior_of(task.rows, start, wheels);
+  WindowFit fit = fit_in_rounds(task);
+
+  const Car car = task.prior.car(fit.theta);
+  Car own_size{.vehicle = configured, .wheels = options.wheels};
+  for (std::size_t i = 0; i < task.rows.size(); ++i)
+    task.rows[i].put(own_size, task.rows[i].per_full_size * value_of(task.rows[i], fit.theta[i]));
+  found.vehicle = own_size.vehicle;
+  found.delay = std::max(0.0, own_size.delay);
+  found.wheels = own_size.wheels;
   found.loss = fit.loss;
   found.correlation = fit.correlation;
-  const Car car = prior.car(fit.theta);
-  Car as_it_is{.vehicle = configured, .wheels = options.wheels};
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    rows[i].put(as_it_is, rows[i].per_full_size * value_of(rows[i], fit.theta[i]));
-  found.vehicle = as_it_is.vehicle;
-  found.delay = std::max(0.0, as_it_is.delay);
-  found.wheels = as_it_is.wheels;
-  found.has_pedal = has_pedal;
   found.residual = {fit.residual[0] / similarity.length(), fit.residual[2],
                     fit.residual[3] / similarity.speed()};
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const double deviation = hypot(fit.deviation[i], rows[i].model_error);
-    const auto outside = [&](double theta) {
-      return rows[i].unit.from_si(value_of(rows[i], theta) * rows[i].per_full_size);
-    };
-    found.estimates.push_back({rows[i].key, std::string(rows[i].unit.name), outside(fit.theta[i]),
-                               outside(fit.theta[i] - 2.0 * deviation),
-                               outside(fit.theta[i] + 2.0 * deviation), outside(prior.mean[i]),
-                               deviation < 0.4 * prior.deviation[i]});
-  }
-  look_back(logs, windows, car, similarity, found);
-  for (Estimate& each : found.estimates) {
-    if (each.key == "latency_ms")
-      for (double* number : {&each.value, &each.low, &each.high}) *number = std::max(0.0, *number);
-    // The beginning of the curve says little about its peak.
-    if (each.key == "friction" && !found.knows_tires()) each.is_excited = false;
-  }
+  look_back(logs, task.windows, car, similarity, found);
+  add_estimates(task, fit, found);
   found.correlations = std::move(fit.correlations);
-  found.stretches = predict(logs, std::move(held_out), car, noise, similarity);
+  found.stretches = predict(logs, std::move(task.held_out), car, task.noise, similarity);
   found.held_out = prediction_errors(found.stretches, similarity.time());
   return found;
 }

@@ -15,7 +15,7 @@
 namespace chicane::run {
 namespace {
 
-constexpr double kStanding = 0.02;  // [m/s]
+constexpr double kStanding = 0.02;  // [m/s] a slower car stands; chosen
 constexpr const char* kTimeLimit = "time limit reached";
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
@@ -166,7 +166,7 @@ telemetry::RunSummary Account::summary(std::optional<double> duration) const {
   run.latency = terms_.latency;
   run.laps_wanted = terms_.laps;
   if (duration) run.duration = *duration;
-  if (has_finished_) run.laps_wanted = 1;  // an open road has no more
+  if (has_finished_) run.laps_wanted = 1;  // the only lap of an open road
   run.completed = terms_.laps > 0 && run.laps_completed >= run.laps_wanted;
   run.end_reason = end_reason_;
   if (end_reason_ == kTimeLimit && stood_for_ > kStoodTime) {
@@ -181,9 +181,9 @@ telemetry::RunSummary Account::summary(std::optional<double> duration) const {
 
 namespace {
 
-constexpr double kShare = 0.9;        // least length of a lap over the first lap's
-constexpr double kMostTurned = 0.45;  // turn against the first crossing [rad]: roads cross at 30° or more
-constexpr double kSlack = 5.0;        // distance beyond the one that the speed explains [m]
+constexpr double kShare = 0.9;        // least length of a lap over the first lap's; chosen
+constexpr double kMostTurned = 0.45;  // [rad] turn against the first crossing: roads cross at 30° or more
+constexpr double kSlack = 5.0;        // [m] distance beyond the one that the speed explains; chosen
 
 Vec2 direction_of(double heading) noexcept { return {cos(heading), sin(heading)}; }
 
@@ -214,7 +214,7 @@ void LapLearner::see(double time, const model::Pose& car, double speed) noexcept
   state_.time = time;
   state_.lap_time = time - lap_start_;
   if ((before < 0.0) == (after < 0.0) || std::fabs(beside) > kReach) return;
-  // A road that crosses the line's own goes over the line as well, in another direction.
+  // A road that crosses this one leads over the line, too, in another direction: that is no crossing of it.
   const double turned = angle_difference(car.psi, atan2(direction_.y(), direction_.x()));
   const double back =
       std::min(std::fabs(turned), kPi - std::fabs(turned));  // counts a car that has turned round, too
@@ -243,7 +243,7 @@ void LapLearner::count_lap(double crossing) noexcept {
   state_.last_sector_times.fill(telemetry::kNotMeasured);
   const bool is_best = state_.lap == 1 || state_.last_lap_time < state_.best_lap_time;
   if (is_best) state_.best_lap_time = state_.last_lap_time;
-  state_.last_lap_was_clean = true;  // nothing is known to its discredit
+  state_.last_lap_was_clean = true;  // without a track nothing shows the contrary
 }
 
 namespace {
@@ -257,7 +257,7 @@ AccountTerms terms(const road::Track* track, const scenario::Scenario& scenario,
   return terms;
 }
 
-/// The measurement, with the wheels where they are assumed.
+/// Sighting of a measured car, with wheels where its parameters have them.
 sim::Sighting sighting_of(const model::Measurement& seen, const model::VehicleParams& car) {
   const double edge = 0.5 * (car.track_width + car.tire_width);
   return {.pose = {.x = seen.x, .y = seen.y, .psi = seen.psi},

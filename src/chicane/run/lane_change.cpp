@@ -18,14 +18,15 @@
 namespace chicane::run {
 namespace {
 
-constexpr double kGap = 1.0;         // [m] between entry and side lane
-constexpr double kIntoEntry = 3.0;   // [m] of the entry lane in which the line begins to turn
-constexpr double kIntoSide = 5.0;    // [m] of the side lane, at either end
-constexpr double kIntoExit = 4.0;    // [m]
-constexpr double kBeside = 6.0;      // [m] of space at the sides of the line where there are no cones
-constexpr double kReach = 1.0;       // [m] of the edges beyond the cones: what reaches beyond the axles
-constexpr double kFarPoints = 20.0;  // [m] between points before and behind the course
-constexpr double kEdgePoints = 0.5;  // [m] between points in it
+// The course is that of docs/measured/racing.md, "The severe double lane change"; other numbers were chosen.
+constexpr double kGap = 1.0;        // [m] between entry and side lane, by the standard
+constexpr double kIntoEntry = 3.0;  // [m] end of the entry lane in which way() turns already
+constexpr double kIntoSide = 5.0;   // [m] both ends of the side lane in which way() still turns
+constexpr double kIntoExit = 4.0;   // [m] beginning of the exit lane in which way() still turns
+constexpr double kBeside = 6.0;     // [m] width of the road beside the line where there are no cones
+constexpr double kReach = 1.0;  // [m] length of a lane's edges beyond its cones: the body beyond its axles
+constexpr double kFarPoints = 20.0;  // [m] between points of the road before and behind the course
+constexpr double kEdgePoints = 0.5;  // [m] between points of the road in the course
 constexpr double kOutline = 0.25;    // [m] between points of the body's sides
 
 /// Smooth step from 0 to 1 with no slope and no curvature at its ends.
@@ -34,22 +35,22 @@ double blend(double t) {
   return t * t * t * (10.0 + t * (6.0 * t - 15.0));
 }
 
-constexpr double kReleased = 2.0;       // [m] behind the entry
-constexpr double kWayStep = 5.0 / 3.6;  // [m/s] between speeds that a way is planned for
+constexpr double kReleased = 2.0;       // [m] behind the entry: the throttle is released, by the standard
+constexpr double kWayStep = 5.0 / 3.6;  // [m/s] between speeds for which lines are planned
 constexpr double kUsedRoom = 0.2;   // share of the space beside the body in the entry lane that the line uses
 constexpr double kPlanStep = 0.04;  // [s] between nodes of a plan, about
-constexpr double kStopping = 10.0;  // [m/s²] at the end of the road, which no car reaches
-constexpr double kShown = 6.0;      // [m] of road at the sides of the shown waypoints
+constexpr double kStopping = 10.0;  // [m/s²] braking at the end of the road, which no car reaches
+constexpr double kShown = 6.0;      // [m] width of the road beside the waypoints
 constexpr double kWaypoints = 3.0;  // [m] between waypoints in the course
-constexpr double kFarWaypoints = 20.0;  // [m] between waypoints before and behind it
-constexpr double kSpeedGain = 2.0;      // [1/s]
-constexpr double kNoPedal = 0.01;       // [m/s²] that drive and brakes give, known to the controller
-constexpr double kMostTime = 60.0;      // [s]
-constexpr double kHasStopped = 1.0;     // [m/s]
+constexpr double kFarWaypoints = 20.0;  // [m] between waypoints before and behind the course
+constexpr double kSpeedGain = 2.0;      // [1/s] acceleration over speed error before the entry
+constexpr double kNoPedal = 0.01;    // [m/s²] drive and brakes in the controller's model: it has no pedals
+constexpr double kMostTime = 60.0;   // [s] of a run
+constexpr double kHasStopped = 1.0;  // [m/s] speed that ends a run
 
 double kmph(double speed) { return speed / 3.6; }
 
-/// Holds the speed, then releases the throttle; the controller in it steers.
+/// Driver of the course: holds the speed, then releases the throttle. Another controller steers.
 class ReleasesThrottle final : public controller::Controller {
  public:
   ReleasesThrottle(std::unique_ptr<Controller> driver, const model::VehicleParams& vehicle, double speed)
@@ -83,7 +84,7 @@ double margin_of(const model::VehicleParams& car) {
   return beside_tyres - kUsedRoom * beside_body;
 }
 
-/// Scenario for the course: without an end, faults and guard.
+/// Scenario `driven` on the course: without laps, time limit, faults and guard.
 scenario::Scenario on_course(const scenario::Scenario& driven) {
   scenario::Scenario scenario = endless(driven);
   scenario.guard.mode = safety::GuardMode::kOff;
@@ -184,7 +185,7 @@ Result<road::RacingLine> LaneChange::plan(double grip_share) const {
 
 Result<LaneChange::Way> LaneChange::way_at(double speed) {
   Result<road::RacingLine> line = fail(ErrorCode::kInvalidArgument, "");
-  // If a walking pace has no optimum, take the next speed.
+  // Very slow speeds may have no plan: the next speed's line is taken then.
   for (int step = static_cast<int>(std::ceil(speed / kWayStep));; ++step) {
     if (const auto known = ways_.find(step); known != ways_.end()) return known->second;
     const double of_way = std::min(step * kWayStep, full_speed_);

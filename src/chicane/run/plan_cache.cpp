@@ -40,7 +40,9 @@ std::shared_ptr<const DiskCache> cache_in_use() {
   return the_cache;
 }
 
-/// Two hashes of 64 bits with different beginnings.
+/// Name of a result in the cache: 128 bits as hexadecimal digits, by two hashes with different starts over
+/// all that the result depends on. Empty if the build has no id, because other builds may compute another
+/// result.
 class Name {
  public:
   explicit Name(std::string_view kind) {
@@ -132,7 +134,7 @@ void limit_fields(auto& archive, auto& limit) {
   });
 }
 
-/// The result of that name in the cache, if it is there and whole.
+/// Result of that name in the cache; none if it is missing or damaged.
 template <class T, class Read>
 std::optional<T> kept(const DiskCache* cache, const std::string& name, const Read& read) {
   if (cache == nullptr || name.empty()) return {};
@@ -143,8 +145,8 @@ std::optional<T> kept(const DiskCache* cache, const std::string& name, const Rea
   return known;
 }
 
-/// A limit that no budget ended, in the cache under one of two names: one with a witness answers for one
-/// without, too.
+/// Limit in the cache whose search no budget ended. Looks under two names, because a limit with a witness
+/// answers a request without one, too.
 std::optional<lap_time::PlantLimit> whole_limit(const road::Track& track, std::string_view plant,
                                                 const sim::PlantDeviation& deviation,
                                                 lap_time::PlantLimitOptions options,
@@ -304,11 +306,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kMagic = "chicane cache 1\n";  // the number: of this layout
+constexpr std::string_view kMagic = "chicane cache 1\n";  // 1: version of the layout
 constexpr std::string_view kExtension = ".cache";
 constexpr std::string_view kUnfinished = ".part";  // suffix of base/file.hpp
 constexpr std::size_t kHeader = kMagic.size() + 2 * sizeof(std::uint64_t);
-constexpr auto kAbandoned = std::chrono::hours(1);  // a file that a killed process left
+constexpr auto kAbandoned = std::chrono::hours(1);  // age of an unfinished file that a killed process left
 
 std::uint64_t checksum(std::string_view bytes) {
   Fnv hash;
@@ -390,7 +392,7 @@ void DiskCache::make_room() const {
   std::vector<File> files;
   std::uint64_t all = 0;
   std::error_code error;
-  // Other processes may remove files meanwhile: what cannot be asked is passed over.
+  // Other processes may remove files meanwhile: files that are gone are skipped.
   for (fs::directory_iterator at(folder_, error), end; !error && at != end; at.increment(error)) {
     std::error_code gone;
     const fs::path& path = at->path();

@@ -13,35 +13,36 @@
 namespace chicane::run {
 namespace {
 
-constexpr double kFullSize = 4.5;      // [m] length of a car
-constexpr double kLegWay = 0.5;        // [m] of one leg, for a car in full size
-constexpr double kLeastSpeed = 0.5;    // [m/s] needed to judge a time, for a car in full size
-constexpr double kLongestCycle = 1.0;  // [s] between answers; longer ones are silences
-constexpr double kLongestStep = 5.0;   // [s] between measurements that say anything of each other
+// Lengths and speeds hold for a car in full size. The numbers were chosen.
+constexpr double kFullSize = 4.5;      // [m] length of a full-size car
+constexpr double kLegWay = 0.5;        // [m] least way of a leg
+constexpr double kLeastSpeed = 0.5;    // [m/s] least speed that shows a time
+constexpr double kLongestCycle = 1.0;  // [s] longest time between answers; a longer one is a silence
+constexpr double kLongestStep = 5.0;   // [s] longest time between two measurements that are compared
 constexpr std::size_t kLeastLegs = 2;  // legs needed to judge a clock
-constexpr double kRest = 0.1;          // [m/s] at which a car stands
-constexpr double kFaster = 2.0;        // times the wall's time in which a car that stood cannot have driven
-constexpr double kLate = 0.15;         // [s] by which one late message changes the sum of all legs
-constexpr double kClockAcross = 0.3;   // share of the way that a car may move across its heading
-constexpr double kJump = 0.3;          // [m] allowed in addition
-constexpr double kSpeedJump = 2.0;     // [m/s] allowed in addition
-constexpr double kMostBraking = 20.0;  // [m/s²] by which a speed changes
-constexpr double kDrives = 0.1;        // pedal that drives
-constexpr double kPedalMemory = 3.0;   // [s]
-constexpr double kLeastAsked = 1.0;    // [m/s] change by the pedal that distinguishes a clock from a speed
-constexpr double kSteadier = 0.5;      // deviation over the other's below which one explanation is better
-constexpr double kLeastDeviation = 0.002;  // [s] of the running sums, below which both clocks fit
-constexpr double kLateInFew = 4.0;         // times kLate, while there are only kLeastLegs legs
-constexpr double kErrors = 4.0;        // times the deviation of the running sums, from which a ratio differs
-constexpr double kFollowed = 0.1;      // share of a difference that is made up for with each leg
-constexpr double kBurst = 0.5;         // share by which a step in lock step differs that had to wait
-constexpr double kOfStep = 0.15;       // share by which its time differs from the others
-constexpr double kSampling = 0.02;     // [s] by which a state may be younger or older: a usual physics step
+constexpr double kRest = 0.1;          // [m/s] a slower car stands
+constexpr double kFaster = 2.0;        // ratio to the wall's time that the first leg from rest shows at once
+constexpr double kLate = 0.15;         // [s] change of the sum of all legs by one late message
+constexpr double kClockAcross = 0.3;   // most way across the heading, share of the way along it
+constexpr double kJump = 0.3;          // [m] way across the heading that is allowed in any case
+constexpr double kSpeedJump = 2.0;     // [m/s] change of the speed that is allowed in any case
+constexpr double kMostBraking = 20.0;  // [m/s²] change of the speed that is allowed beyond kSpeedJump
+constexpr double kDrives = 0.1;        // least pedal that drives
+constexpr double kPedalMemory = 3.0;   // [s] time constant of the sums of speed gained by the pedal
+constexpr double kLeastAsked = 1.0;    // [m/s] speed by the pedal that tells another clock from a wrong speed
+constexpr double kSteadier = 0.5;  // a clock fits better if its deviation is below this share of the other's
+constexpr double kLeastDeviation = 0.002;  // [s] deviation of the running sums below which both clocks fit
+constexpr double kLateInFew = 4.0;         // factor of kLate while there are only kLeastLegs legs
+constexpr double kErrors = 4.0;            // deviations of the running sums from which a ratio is another one
+constexpr double kFollowed = 0.1;          // share of a difference by which the ratio follows each leg
+constexpr double kBurst = 0.5;    // share of the expected time by which a delayed lock step differs from it
+constexpr double kOfStep = 0.15;  // share by which that step, by its displacement, may differ from the others
+constexpr double kSampling = 0.02;  // [s] change of a state's age from answer to answer: a usual physics step
 constexpr double kLegSamples = 5.0;    // least length of a leg, in kSampling
-constexpr double kSampledSpeed = 4.0;  // [m/s] from which a displacement shows that
-constexpr double kLeastCounted = 0.1;  // share of the expected time that passes in any case
-constexpr double kSampledLeft = 0.95;  // share of what sampling has added that is left after an answer
-constexpr double kOtherClock = 0.5;    // logarithm of a leg's ratio to the median, from another clock
+constexpr double kSampledSpeed = 4.0;  // [m/s] least speed at which a displacement shows the state's age
+constexpr double kLeastCounted = 0.1;  // least counted time of an answer, share of the expected one
+constexpr double kSampledLeft = 0.95;  // decay of the time counted for the age of states, for each answer
+constexpr double kOtherClock = 0.5;    // logarithm of a leg's ratio to the median, above which it is left out
 constexpr double kSame = 0.03;         // logarithm of a ratio that counts as 1
 
 double in_seconds(PlantClock::Clock::duration duration) {
@@ -113,8 +114,9 @@ bool PlantClock::follow(const model::Measurement* measured) {
   return is_jump;
 }
 
-/// Time of a step in lock step in which one message had to wait: its displacement gives the time. The
-/// displacement also shows at which of its own steps a simulator was sampled.
+/// Run time of one answer: the lock step, or the time by the ratio, corrected by the displacement. The
+/// displacement shows a delayed answer of a simulator that advances by equal steps, and the varying age of
+/// the states that a simulator sends.
 double PlantClock::time_of(double wall, const Leg& step) {
   if (step_ > 0.0) return step_;
   const double expected = ratio_ * wall;
@@ -130,7 +132,8 @@ double PlantClock::time_of(double wall, const Leg& step) {
   return counted;
 }
 
-/// The time that the simulator advanced by since the measurement before; no steps where that does not show.
+/// Leg of one step: the time that the simulator has advanced by since the last measurement. Without steps if
+/// the displacement does not show it.
 PlantClock::Leg PlantClock::step_of(double wall, const model::Measurement& now,
                                     const model::Command& acting) {
   const double speed = 0.5 * (std::fabs(now.speed) + std::fabs(last_.speed));
@@ -142,7 +145,7 @@ PlantClock::Leg PlantClock::step_of(double wall, const model::Measurement& now,
   const double plant = way / std::max(speed, 1e-6);
   const double longest = std::min(std::max(plant, ratio_ * wall), 1.0);
   if (std::fabs(gained) > kSpeedJump + kMostBraking * longest) forget();
-  // The simulator may have made no step of its own since: the next way is longer by it.
+  // A way of 0 is accepted: the simulator may have made no step of its own, and the next way is longer.
   const bool is_driving = speed > kLeastSpeed * std::sqrt(size_) && way >= 0.0;
   const bool is_along = across < kJump * size_ + kClockAcross * way;
   if (!is_driving || !is_along || plant > kFastest * wall) {
@@ -158,11 +161,11 @@ PlantClock::Leg PlantClock::step_of(double wall, const model::Measurement& now,
       .wall = wall, .plant = plant, .way = way, .steps = 1, .is_from_rest = std::fabs(last_.speed) < kRest};
 }
 
-/// Adds a step to the running leg. True: a leg is complete.
+/// Adds a step to the running leg. True: the leg is complete, and there are enough to judge the clock.
 bool PlantClock::add(const Leg& step) {
   leg_ = {leg_.wall + step.wall, leg_.plant + step.plant, leg_.way + step.way, leg_.steps + 1,
           leg_.steps == 0 ? step.is_from_rest : leg_.is_from_rest};
-  // One of the simulator's own steps more or less must not make a leg that fit() takes for another clock's.
+  // Longer legs, because fit() leaves out short ones that differ by one of the simulator's own steps.
   if (leg_.way < kLegWay * size_ || leg_.plant < kLegSamples * kSampling) return false;
   if (leg_.plant > kSlowest * leg_.wall) legs_[count_++ % kLegs] = leg_;
   const bool is_faster = leg_.is_from_rest && leg_.plant > kFaster * leg_.wall;
@@ -170,8 +173,9 @@ bool PlantClock::add(const Leg& step) {
   return count_ >= kLeastLegs || (count_ == 1 && is_faster);
 }
 
-/// Sums of the legs near the median, and how the running sums deviate from their ratio: of the right clock by
-/// the noise of a place and a step of the simulator, however long, of a wrong one by more with each leg.
+/// Sums of the legs near the median, and the deviation of the running sums from their ratio. For the right
+/// clock this deviation stays as small as the noise of a place and one step of the simulator; for a wrong one
+/// it grows with each leg.
 template <class Base>
 PlantClock::Fit PlantClock::fit(const Base& base) const {
   const std::size_t size = std::min(count_, kLegs);
@@ -206,12 +210,12 @@ bool PlantClock::take_up() {
   const Fit by_step = fit([](const Leg& leg) { return leg.steps; });
   const bool was_in_step = step_ > 0.0;
   const bool is_distinct = std::max(by_clock.deviation, by_step.deviation) > kLeastDeviation;
-  // Sums of all legs: a late message shortens the next leg, so a busy machine changes them by its last delay.
+  // Sums of all legs change by the last delay alone, because a late message shortens the next leg.
   const double late = (count_ == kLeastLegs ? kLateInFew : 1.0) * kLate * std::max(ratio_, 1.0);
   const bool differs = std::fabs(by_clock.all - ratio_ * by_clock.all_counted) > late &&
                        std::fabs(log(by_clock.all / (ratio_ * by_clock.all_counted))) > log(kLeastChange);
-  // In real time with equal steps a busy machine makes the wall's clock look worse; but a step that waited is
-  // longer by the wait.
+  // In real time a busy machine makes the wall's clock look worse than equal steps, so lock step is not taken
+  // up.
   const bool is_real_time = ratio_ == 1.0 && !differs;
   const bool is_in_step = was_in_step ? !(is_distinct && by_clock.deviation < kSteadier * by_step.deviation)
                                       : is_distinct && !is_real_time && count_ >= kLegs / 2 &&
@@ -225,12 +229,12 @@ bool PlantClock::take_up() {
                            (was_in_step || differs));
   if (!is_another) {
     if (count_ >= kLegs) is_speed_known_ = true;
-    // Follow closely if the count is not the wall's anyway.
+    // Follows closely, unless the wall's time is counted.
     if (was_in_step || ratio_ != 1.0)
       counted *= exp(std::max(kFollowed, 1.0 / static_cast<double>(count_)) * off);
     return false;
   }
-  // With a speed in another unit the pedals gain the square of its share in the time that displacement shows.
+  // With a speed in another unit, the pedal's effect differs by the square of the unit's factor.
   const bool shows_speed = asked_ > kLeastAsked * std::sqrt(size_) && gained_ > 0.0;
   is_speed_known_ |= shows_speed && std::fabs(log(gained_ / asked_)) < log(kPedalError);
   if (!is_speed_known_) return false;

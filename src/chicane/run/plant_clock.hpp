@@ -12,9 +12,10 @@
 namespace chicane::run {
 
 /// Options of an external car's clock.
+/// Source of the run's time.
 struct PlantClockOptions {
-  bool is_estimated = false;  ///< false: by arrival; true: by the ratio that the measurements show
-  bool is_measured = false;   ///< true: by Measurement::time, the simulator's own
+  bool is_estimated = false;  ///< true: ratio to the wall's time, or lock step, as the measurements show
+  bool is_measured = false;   ///< true: Measurement::time, the simulator's own
   double lock_step = 0.0;     ///< time that the simulator advances with each answer [s]; 0: by its own clock
 };
 
@@ -30,15 +31,15 @@ struct PlantClockOptions {
 class PlantClock {
  public:
   using Clock = std::chrono::steady_clock;
-  static constexpr double kSlowest = 0.02, kFastest = 20.0;  ///< ratios that are looked for
-  static constexpr double kLeastChange = 1.15;               ///< factor by which another ratio differs
-  static constexpr double kPedalError = 1.5;  ///< factor by which the effect of a pedal may differ
+  static constexpr double kSlowest = 0.02, kFastest = 20.0;  ///< ratios to the wall's time that are found
+  static constexpr double kLeastChange = 1.15;               ///< least factor between two different ratios
+  static constexpr double kPedalError = 1.5;  ///< most factor between modelled and real effect of a pedal
 
   PlantClock(const PlantClockOptions& options, const model::VehicleParams& vehicle, Clock::time_point start);
 
   /// Resets for another car, with an unknown clock. The run's time continues.
   void begin();
-  /// The next measurement says nothing of the time since the last: a person drove, or nothing came.
+  /// Leaves out the time until the next measurement, because a person drove or nothing came.
   void pause() { has_last_ &= options_.is_measured; }
   /// Takes a message that came at `received`, with `measured` (null: nothing usable), while `acting` acted on
   /// the car. True: the clock has changed, and results by the earlier time are void.
@@ -50,19 +51,19 @@ class PlantClock {
   [[nodiscard]] double delay(double delay) const { return step_ > 0.0 ? step_ : ratio_ * delay; }
   [[nodiscard]] double ratio() const { return ratio_; }     ///< run time over wall time
   [[nodiscard]] double lock_step() const { return step_; }  ///< [s]; 0: by its own clock
-  /// Enough was measured since the last change to name it: lock step looks like a ratio at first.
+  /// Whether enough was measured since the last change to report it: lock step looks like a ratio at first.
   [[nodiscard]] bool is_settled() const { return options_.is_measured || count_ >= kLegs / 2; }
   /// Sentence for people on how time is counted.
   [[nodiscard]] std::string news() const;
 
  private:
-  /// One stretch of driving.
+  /// Stretch of driving, of at least one step between measurements.
   struct Leg {
-    double wall = 0.0;   ///< [s]
-    double plant = 0.0;  ///< displacement over speed [s]
+    double wall = 0.0;   ///< duration by the wall's clock [s]
+    double plant = 0.0;  ///< duration by displacement over speed [s]
     double way = 0.0;    ///< [m]
     int steps = 0;
-    bool is_from_rest = false;  ///< the car stood at its beginning
+    bool is_from_rest = false;  ///< the car stood when the leg began
   };
   static constexpr std::size_t kLegs = 12;
   /// Sums of legs.
@@ -95,7 +96,7 @@ class PlantClock {
   Leg leg_;
   std::array<Leg, kLegs> legs_{};
   std::size_t count_ = 0;
-  double sampled_ = 0.0;               ///< time that is counted beyond the ratio's [s]
+  double sampled_ = 0.0;               ///< time counted in addition, for the age of states [s]
   int unusable_ = 0;                   ///< messages since the last measurement
   double ahead_ = 0.0;                 ///< run time minus the simulator's own time [s]
   double asked_ = 0.0, gained_ = 0.0;  ///< speed that the pedal should have given lately, and has [m/s]

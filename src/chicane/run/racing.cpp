@@ -23,14 +23,15 @@
 namespace chicane::run {
 namespace {
 
-constexpr double kModelRoad = 2.5;      // [m] a narrower road may be a model's
-constexpr double kShareAtTheEnd = 0.9;  // share of the plan's braking at the end of an open road
+constexpr double kModelRoad = 2.5;      // [m] a narrower road may belong to a model car; chosen
+constexpr double kShareAtTheEnd = 0.9;  // share of the plan's braking at the end of an open road; chosen
 
 const controller::TrackingMpcOptions& options_of(const scenario::Scenario& scenario) {
   return std::get<controller::TrackingMpcEntry::Options>(scenario.controllers);
 }
 
-/// Time from a measurement until the next command acts, for the car in full size [s]; no less than assumed.
+/// Time from a measurement until the next command acts, for the car in full size [s]; at least
+/// SlidingBound::kAssumedDelay.
 double delay_of(const scenario::Scenario& scenario) {
   return std::max((scenario.latency + scenario.control_period) * model::Similarity(scenario.vehicle).time(),
                   model::SlidingBound::kAssumedDelay);
@@ -75,7 +76,7 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_on(const road::Track& track
   return std::make_shared<const road::RacingRoad>(road::line_points(track, *lap), track, planned);
 }
 
-/// A road of model size under a car of full size.
+/// Advice for a road of model size under a car of full size; empty for other roads.
 std::string size_remedy(const scenario::Scenario& scenario, const road::Track& track) {
   const bool may_be_model =
       scenario.vehicle.scale == 1.0 && track.left_width(0.0) + track.right_width(0.0) < kModelRoad;
@@ -101,7 +102,8 @@ Result<void> check_room(const scenario::Scenario& scenario, const road::Track& t
       keeps_to_the_middle ? options_of(scenario).assumed_half_width : std::numeric_limits<double>::infinity();
   const road::Track road = in_full_size(track, scenario);
   const model::VehicleParams car = full_size(scenario);
-  // Kept for those alone whose start is to take no longer than the cached plan.
+  // The cache keeps the result for racing scenarios only, whose start is to take no longer than reading a
+  // plan.
   const Result<void> fits = races(scenario)
                                 ? cached_room(road, car, beside, scenario.vehicle.scale)
                                 : lap_time::can_be_driven(road, car, beside, scenario.vehicle.scale);
@@ -127,7 +129,7 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_wanted_lap(const scenario::
   if (!basis.is_learned) return plan_on(in_full_size(*track, scenario), scenario, basis, go_on, {});
   const model::VehicleParams car = full_size(scenario);
   const double beside = 0.5 * (car.track_width + car.tire_width);
-  // No more road than the guard grants.
+  // The plan uses no more road than the guard allows.
   const bool is_guarded = scenario.guard.mode == safety::GuardMode::kOn;
   const double granted = is_guarded ? scenario.guard.half_width : std::numeric_limits<double>::infinity();
   const double half_width = std::min(options_of(scenario).assumed_half_width + beside, granted);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Thread of low priority that does its work each time it is woken, or its period has passed.
 #include "chicane/run/worker.hpp"
 
 #include <sys/resource.h>
@@ -26,9 +27,9 @@ void Worker::wake() {
 }
 
 void Worker::run() {
-  // Nice value behind everything else, yet not starved: on busy cores a tenth of one thread's share.
+  // Nice value of the thread. On a busy core Linux gives it a tenth of the time of a thread of nice value 0.
   constexpr int kLowPriority = 10;
-  static_cast<void>(setpriority(PRIO_PROCESS, 0, kLowPriority));  // sets this thread only, on Linux
+  static_cast<void>(setpriority(PRIO_PROCESS, 0, kLowPriority));  // on Linux: of this thread only
   std::unique_lock lock(mutex_);
   const auto is_due = [this] { return is_awake_ || is_ending_; };
   for (;;) {

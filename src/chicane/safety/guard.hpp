@@ -27,8 +27,8 @@
 
 namespace chicane::safety {
 
-/// The road as a guard knows it at first: `road`, where it may, or nothing yet. A guard that is off has no
-/// use for one.
+/// Road that a guard begins with: `road` if `options` say GuardRoad::kTrack, else one that waypoints will
+/// fill. A guard that is off needs none, and gets an empty one.
 [[nodiscard]] road::KnownRoad known_road(const GuardOptions& options, const road::RoadData* road,
                                          const model::VehicleParams& vehicle);
 
@@ -56,61 +56,68 @@ namespace chicane::safety {
 /// equation of docs/guard.md, a derivation, a measurement, or *chosen*: by trial, no derivation gives it, and
 /// the runs of docs/measured/safety.md are its check.
 ///
-/// A person's command (Cycle::manual) is not checked: the person drives. Whatever is measured and whatever
-/// the controller does, what is sent is finite and inside the vehicle's range and rate limits. No allocation
-/// after construction; bounded time beside the controller's own; one thread.
+/// A person's command (Cycle::manual) is sent without a check. Every sent command is finite and inside the
+/// vehicle's limits of range and rate, whatever sensors and controller deliver. No allocation after
+/// construction; bounded time beside the controller's own; one thread.
 class Guard {
  public:
-  /// Pre: `controller` is not null. `vehicle`: the model's parameters, and the limits of what is sent.
-  /// `road`: the track's; null, or GuardRoad::kWaypoints: the guard learns it from the waypoints it is shown.
+  /// Pre: `controller` is not null. `vehicle`: parameters of the model, and limits of the sent commands.
+  /// `road`: road of the track; ignored with GuardRoad::kWaypoints. Without one the guard learns the road
+  /// from the waypoints of the measurements.
   Guard(std::unique_ptr<controller::Controller> controller, const model::VehicleParams& vehicle,
         const GuardOptions& options = {}, const road::RoadData* road = nullptr);
-  /// The same with what known_road() has made before: smoothing a road takes milliseconds.
+  /// The same with a road that known_road() made earlier, because smoothing a road takes milliseconds.
   Guard(std::unique_ptr<controller::Controller> controller, const model::VehicleParams& vehicle,
         const GuardOptions& options, road::KnownRoad road);
-  /// All it knows, the controller included. Pre: the controller is Copyable.
+  /// Copies the guard with its controller, to drive on from the same moment. Pre: the controller is Copyable.
   Guard(const Guard&) = default;
   Guard& operator=(const Guard&) = delete;
 
-  /// What else holds in a cycle.
+  /// Timing of one control cycle, and the command of a person who drives.
   struct Cycle {
-    double interval = 0.0;  ///< since the command before [s], for the rate limit; <= 0: not limited
+    double interval = 0.0;  ///< time since the last command [s], for the rate limit; <= 0: no rate limit
     std::optional<model::Command> manual{};  ///< a person's command, sent in the controller's place
-    double longest = 0.0;                    ///< interval lately [s]: commands are held for so long
+    double longest = 0.0;                    ///< longest recent interval [s]: a command may be held so long
   };
-  /// One control cycle. Writes into `result` what the controller answered with the command that is sent, and
-  /// returns the command as it was asked for, before the gate.
+  /// Runs one control cycle. `result` receives the controller's answer with the command that is sent. Returns
+  /// the chosen command before the gate limits it.
   model::Command step(const model::Measurement& measured, Deadline deadline, const Cycle& cycle,
                       controller::StepResult& result) noexcept;
-  /// Of the last step().
+  /// Decision of the last step(), with its reason.
   [[nodiscard]] const GuardReport& report() const noexcept { return report_; }
-  /// Everything learned is forgotten, the controller's part included: a new run begins.
+  /// Begins a new run: guard and controller forget everything that they learned, except a line of use_line().
   void reset() noexcept;
-  /// The car is on another road than configured: from now on the guard learns it from waypoints. Allocates.
+  /// Drops the configured road, on which the car is not. The guard learns the road from waypoints instead.
+  /// Allocates.
   void forget_road();
-  /// A planned lap for the controller to race by; the stops follow it, too, where the guard knows the track,
-  /// and count with its grip.
-  /// It stays when a new run begins.
+  /// Sets the planned lap that the controller races by; null: none. Stops count with the lap's grip, and
+  /// follow its line if the lap was planned on the road that the guard knows. Stays when a new run begins.
   void use_line(std::shared_ptr<const road::RacingRoad> lap);
-  /// Other parameters of the model from now on. The limits of what is sent stay those of the beginning.
+  /// Changes the parameters of the model. The limits of the sent commands stay those of the constructor.
   void set_vehicle(const model::VehicleParams& vehicle) noexcept;
 
-  /// The stop at hand after step(): from the moment at which the next command would act. Size 0: none.
-  /// As commands for the actuators, like the command that is sent.
+  /// The stored stop after step(), as commands for the actuators. Begins when the next command would act.
+  /// Size 0: none is stored.
   [[nodiscard]] const StopPlan& stop() const noexcept { return answer_.is_usual() ? filter_.stop() : stop_; }
   [[nodiscard]] controller::Controller& controller() noexcept { return *controller_; }
   [[nodiscard]] const controller::Controller& controller() const noexcept { return *controller_; }
 
  private:
-  // Chosen. A stop ends at 0.3 m/s (StopPlanner), so that a stopped car stands; a trial takes about 2 s.
-  static constexpr double kStandingSpeed = 0.5;    ///< [m/s]
-  static constexpr double kStuckTime = 3.0;        ///< [s] a car that should move may stand
-  static constexpr double kAskPause = 4.0;         ///< [s] after the first trial of a car in doubt
-  static constexpr double kGuessedWidth = 1.0;     ///< [m] by which an assumed width may be too small
-  static constexpr double kRollsBackAtMost = 3.0;  ///< [m/s] faster, not the car rolls: its heading is wrong
+  static constexpr double kStandingSpeed = 0.5;  ///< [m/s] a slower car stands; chosen
+  static constexpr double kStuckTime = 3.0;      ///< [s] docs/safety.md, condition "stuck"
+  static constexpr double kAskPause = 4.0;       ///< [s] between first and second trial (docs/safety.md)
+  static constexpr double kGuessedWidth = 1.0;   ///< [m] error allowed of an assumed half width; chosen
+  /// [m/s] Car moving backwards faster than this does not roll back: its measured heading is wrong. Chosen.
+  static constexpr double kRollsBackAtMost = 3.0;
 
-  void take_up_line() noexcept;
+  // The measurement: what of it is plausible, and what it tells of car, road and actuators.
+  [[nodiscard]] const model::Measurement& look(const model::Measurement& measured) noexcept;
   void note_residual(const model::State& expected, double time) noexcept;
+  void take_up_line() noexcept;
+  void set_grip(double share) noexcept;
+  [[nodiscard]] std::optional<StopStart> place_on_road(double act_time) noexcept;
+
+  // The command: the controller's, a slower one, the stored stop or the fallback.
   void choose(const model::Measurement& seen, const Cycle& cycle, controller::StepResult& result) noexcept;
   [[nodiscard]] bool filter(const StopStart& start, const Cycle& cycle,
                             controller::StepResult& result) noexcept;
@@ -125,8 +132,12 @@ class Guard {
                  controller::StepResult& result) noexcept;
   [[nodiscard]] bool drive_backup(const StopStart& start, controller::StepResult& result) noexcept;
   void show_backup(const StopStart& start, controller::Plan& plan) const noexcept;
+  void begin_with(const model::Command& acting, double time) noexcept;
+  void send(const Cycle& cycle, const model::Command& asked, controller::StepResult& result) noexcept;
+
+  // The way back of a car that is off its road, across it, stuck at its edge, or rolls back.
   void watch_course(const std::optional<StopStart>& start) noexcept;
-  /// By the estimate.
+  /// Whether the estimated speed is below kStandingSpeed.
   [[nodiscard]] bool stands() const noexcept { return std::fabs(estimator_.state().vx) < kStandingSpeed; }
   [[nodiscard]] bool idles(const controller::StepResult& result) const noexcept;
   [[nodiscard]] bool should_lead_back(double time, bool has_answer) noexcept;
@@ -134,6 +145,10 @@ class Guard {
   [[nodiscard]] model::VehicleParams led_vehicle() const noexcept;
   [[nodiscard]] bool turns_as_asked(double time, const model::State& car) noexcept;
   [[nodiscard]] double against_rolling_back() const noexcept;
+  void watch_rest(double time, double throttle) noexcept;
+  void free_stuck_car(double time, double interval, controller::StepResult& result) noexcept;
+
+  // The trial of a car that was put elsewhere, or whose controller has no answer.
   void watch_for_reset(const model::Measurement& measured) noexcept;
   [[nodiscard]] bool may_ask(const model::Measurement& measured) const noexcept;
   [[nodiscard]] bool agrees_with_road(const model::Measurement& measured) const noexcept;
@@ -141,86 +156,80 @@ class Guard {
   void watch_answer(const model::Measurement& seen, bool has_answer) noexcept;
   [[nodiscard]] bool try_reset(const std::optional<StopStart>& start, const Cycle& cycle, double time,
                                controller::StepResult& result) noexcept;
-  void watch_rest(double time, double throttle) noexcept;
-  void free_stuck_car(double time, double interval, controller::StepResult& result) noexcept;
-  [[nodiscard]] const model::Measurement& look(const model::Measurement& measured) noexcept;
-  void set_grip(double share) noexcept;
+
+  // The actuators: how they answer, and which commands compensate for it.
   void count_with_actuators() noexcept;
   void watch_actuators(const model::Measurement& seen) noexcept;
   void take_up_actuators() noexcept;
   void count_with_answer() noexcept;
   void report_learned(controller::LearnedCar& learned) const noexcept;
-  void begin_with(const model::Command& acting, double time) noexcept;
-  void send(const Cycle& cycle, const model::Command& asked, controller::StepResult& result) noexcept;
-  [[nodiscard]] std::optional<StopStart> place_on_road(double act_time) noexcept;
 
   Owned<controller::Controller> controller_;
   model::VehicleParams vehicle_;  ///< as configured
-  double grip_ = 1.0;             ///< of the planned lap, over that
+  double grip_ = 1.0;             ///< grip of the planned lap over the configured grip
   GuardOptions options_;
   MeasurementMonitor monitor_;
   ResetWatch reset_watch_;
-  // How the actuators answer: in the long run, beyond that at this moment, and both together.
-  ActuatorWatch actuators_;  ///< finds a difference from what was learned within a second
-  ActuatorEstimator learned_;
-  ActuatorAnswer answer_;  ///< that commands are sent for
+  ActuatorWatch actuators_;    ///< finds sudden changes beyond learned_
+  ActuatorEstimator learned_;  ///< estimates a constant deviation from the configuration
+  ActuatorAnswer answer_;      ///< deviation that sent commands compensate: learned_ and actuators_ together
   Supervisor supervisor_;
   Fallback fallback_;
   CommandGate gate_;
   road::KnownRoad road_;
   tracking::StateEstimator estimator_;
-  tracking::DirectionWatch direction_;  ///< by what is measured, plausible or not
-  tracking::CommandHistory commanded_;  ///< commands as the actuators got them
-  tracking::CommandHistory sent_;  ///< their effect by answer_: angles of the wheels, which models follow
+  tracking::DirectionWatch direction_;  ///< also sees measurements that the monitor rejects
+  tracking::CommandHistory commanded_;  ///< commands to the actuators, with the times at which they act
+  tracking::CommandHistory sent_;       ///< effect of commanded_ on wheels and pedals
   GuardReport report_;
-  StopPlan stop_;  ///< the stop at hand, for actuators that answer otherwise
+  StopPlan stop_;  ///< the stored stop, with commands that compensate answer_
   PredictiveFilter filter_;
   model::PredictionModel model_;
-  double s_ = 0.0;  ///< on the known road where the command acts [m]
-  double d_ = 0.0;  ///< to the left of its line [m]
-  unsigned revision_ = 0;
-  /// When something began [s]: empty until it is asked for or set, so that no clock's zero is taken for it.
+  double s_ = 0.0;         ///< arc length on the known road where the command acts [m]
+  double d_ = 0.0;         ///< distance from the road's line there [m], left positive
+  unsigned revision_ = 0;  ///< number of the road's line that s_ and d_ refer to
+  /// Start of a state [s]. Infinite until lasts() is called or `at` is set, because 0 may be a start.
   struct Since {
     double at = std::numeric_limits<double>::infinity();
-    /// For how long it has lasted. It begins at `time` where it has not, or where the clock went back.
+    /// Duration of the state [s]. A state without a start, or with one in the future, starts at `time`.
     [[nodiscard]] double lasts(double time) noexcept {
       if (!(at <= time)) at = time;
       return time - at;
     }
   };
-  /// What a run has shown of the car and its controller. All of it is forgotten when another begins.
+  /// State of car and controller in this run; cleared by reset().
   struct Run {
-    bool has_place = false;
+    bool has_place = false;         ///< s_ and d_ are valid
     bool is_far = false;            ///< the car is far from the known road
-    bool is_astray = false;         ///< it is off the road or across it
-    bool has_stood_astray = false;  ///< since it is astray; from then on it may leave the road to turn
-    bool is_led = false;            ///< it stood while commands were refused, and is led back to the line
-    bool creeps = false;            ///< it has begun an arc beside the edge
-    bool goes_round = false;        ///< direction of that arc: the long way round
-    bool is_idle = false;           ///< its controller does not drive a car that stands, or is led
-    bool rests = false;             ///< it came to rest, and has not been asked to drive since
+    bool is_astray = false;         ///< the car is off the road, or across it
+    bool has_stood_astray = false;  ///< the astray car has stood: it may leave the road to turn
+    bool is_led = false;            ///< the car stood with refused commands, and is led back to the line
+    bool creeps = false;            ///< the led car drives an arc beside the edge
+    bool goes_round = false;        ///< the arc of `creeps` turns the long way round
+    bool is_idle = false;           ///< the controller does not drive a car that stands or is led
+    bool rests = false;             ///< the car came to rest, and no drive was commanded since
     bool is_by_hand = false;        ///< a person drove in the last cycle
-    bool has_jumped_aside = false;  ///< the measured place, of its road, since something is in doubt
-    double ask_at = 0.0;            ///< from when on a car in doubt may be tried again [s]
-    double ask_pause = kAskPause;   ///< after the next trial [s]
-    double tried = 0.0;             ///< way driven to see whether the car was put elsewhere, by the model [m]
-    double held_speed = 0.0;        ///< of a car that should move, when it began not to [m/s]
-    double led_at = 0.0;            ///< it is led, last [s]
+    bool has_jumped_aside = false;  ///< the measured place left the road since a signal is in doubt
+    double ask_at = 0.0;            ///< earliest time of the next trial [s]
+    double ask_pause = kAskPause;   ///< pause after the next trial [s]
+    double tried = 0.0;             ///< distance driven in the running trial, by the model [m]
+    double held_speed = 0.0;        ///< speed at which the stuck car stopped gaining speed [m/s]
+    double led_at = 0.0;            ///< time at which the car was last led [s]
     model::Pose led_from{};         ///< pose of the car at led_at
-    double led_heading = 0.0;       ///< heading when its turning was judged last [rad]
-    double led_asked = 0.0;         ///< turning by its wheels' angle since [rad]
-    double stays_until = 0.0;       ///< its wheels turned it otherwise than asked [s]
-    Since answered;                 ///< the controller, last
-    Since still;                    ///< ResetWatch waits, and the car stands by the estimate
+    double led_heading = 0.0;       ///< heading at the last comparison with led_asked [rad]
+    double led_asked = 0.0;         ///< turn that the wheels' angle should have made since then [rad]
+    double stays_until = 0.0;       ///< end of a pause: the led car turned otherwise than its wheels [s]
+    Since answered;                 ///< last answer of the controller
+    Since still;                    ///< estimated standstill of a car that is measured elsewhere
     Since refused;                  ///< the car stands or is led, and no answer has moved it
-    Since moved;                    ///< faster than at rest, last
-    Since stuck;                    ///< a car that should move does not
-    Since released;                 ///< its brake, or began to be stuck
+    Since moved;                    ///< last motion faster than rest
+    Since stuck;                    ///< standstill of a car that should move
+    Since released;                 ///< last release of the brake, or start of `stuck`
   };
   Run run_;
-  double act_speed_ = 0.0;  ///< estimated where the command acts, by place_on_road(); infinite: unknown [m/s]
-  double most_drive_ = 0.0;  ///< acceleration that the tyres can give then (eq. 14) [m/s²]
-  double sent_from_ = 0.0;   ///< from which the command of this cycle acts [s]
+  double act_speed_ = 0.0;   ///< estimated speed when the command acts, infinite: unknown [m/s]
+  double most_drive_ = 0.0;  ///< acceleration that the tyres can transmit then (eq. 14) [m/s²]
+  double sent_from_ = 0.0;   ///< time from which the command of this cycle acts [s]
 };
 
 }  // namespace chicane::safety

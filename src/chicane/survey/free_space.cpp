@@ -18,21 +18,24 @@
 namespace chicane::survey {
 namespace {
 
-constexpr std::size_t kMostFine = 16'000'000;   // cells of the distance field
-constexpr std::size_t kMostCoarse = 1'000'000;  // cells in which the way round is searched
-constexpr double kLeastInfield = 1.0;           // least diagonal of an infield [m]
-constexpr double kMostReach = 1.6;  // a side is at most this many clearances wide: pockets are no road
-constexpr int kRounds = 40;         // rounds of moving the line to the middle
+constexpr std::size_t kMostFine = 16'000'000;   // limit of cells of the distance field: bounds memory; chosen
+constexpr std::size_t kMostCoarse = 1'000'000;  // limit of cells of the search: bounds time; chosen
+constexpr double kLeastInfield = 1.0;           // [m] least diagonal of an infield; chosen
+constexpr double kMostReach = 1.6;  // widest side of the road over its clearance: pockets are no road; chosen
+constexpr int kRounds = 40;         // rounds of moving the line to the middle; chosen
+constexpr std::size_t kLeastLine = 8;  // least points of a way round
 
-/// A road that may be gone round: cells of the coarse grid, and the obstacle inside.
+/// Road round an obstacle, on the coarse grid.
 struct Ring {
   Mask road;
-  std::size_t centre = 0;    ///< the rightmost cell of the obstacle
-  double infield = 0.0;      ///< diagonal of the infield [cells]
+  std::size_t centre = 0;    ///< rightmost cell of the obstacle
+  double infield = 0.0;      ///< diagonal of the obstacle without the clearance [cells]
   bool is_at_border = true;  ///< the road reaches the edge of the map
 };
 
-/// The steps from free space to a loop. Places are in fine cells unless a name says otherwise.
+/// Search of the loop, in steps: join cells of the map to a fine grid and measure distances to walls; find
+/// the road round the largest infield on a coarse grid; find the cheapest way round; move it to the middle;
+/// measure the widths. Places are in fine cells unless a name says otherwise.
 class LoopFinder {
  public:
   LoopFinder(const FreeSpace& space, const LoopOptions& options) : space_{space}, options_{options} {
@@ -54,14 +57,13 @@ class LoopFinder {
     const std::optional<Ring> ring = find_ring(clearance);
     if (!ring) return fail(ErrorCode::kParse, why_none());
     std::vector<Vec2> line = way_round(*ring);
-    if (line.size() < 8) return fail(ErrorCode::kParse, why_none());
+    if (line.size() < kLeastLine) return fail(ErrorCode::kParse, why_none());
     line = moved_to_the_middle(std::move(line));
     return measured(line);
   }
 
  private:
-  /// Joins cells: a joined cell is blocked if any of its parts is. Then measures the distances to blocked
-  /// cells.
+  /// Joins cells to the fine grid, where a cell is blocked if any of its parts is, and measures distances.
   void block() {
     blocked_.assign(fine_.size(), 0);
     for (int y = 0; y < fine_.height * join_ && y < space_.height; ++y)
@@ -74,7 +76,7 @@ class LoopFinder {
     field_ = distance_field(blocked_, fine_.width, fine_.height);
   }
 
-  /// Small spots that free cells surround are noise.
+  /// Frees small blocked spots inside free space, which are noise.
   void remove_spots() {
     spots_ = 0;
     std::vector<int> labels;
@@ -90,7 +92,7 @@ class LoopFinder {
       if (labels[i] != 0 && is_noise[static_cast<std::size_t>(labels[i])] != 0) blocked_[i] = 0;
   }
 
-  /// Free room around a cell [cells].
+  /// Distance from a coarse cell to the nearest wall [cells].
   [[nodiscard]] double clearance_at(std::size_t coarse) const {
     const Place at = coarse_.place(coarse);
     const int x = std::min(fine_.width - 1, at.x * stride_ + stride_ / 2);
@@ -98,6 +100,8 @@ class LoopFinder {
     return static_cast<double>(field_[fine_.at(x, y)]) - 0.5;
   }
 
+  /// Road of at least `clearance` [cells] to each side that goes round the largest infield; roads that do not
+  /// reach the edge of the map come first.
   std::optional<Ring> find_ring(double clearance) {
     Mask passable(coarse_.size(), 0);
     for (std::size_t i = 0; i < passable.size(); ++i) passable[i] = clearance_at(i) >= clearance ? 1 : 0;
@@ -108,7 +112,7 @@ class LoopFinder {
     std::sort(order.begin(), order.end(), [&](int a, int b) {
       return roads[static_cast<std::size_t>(a)].count > roads[static_cast<std::size_t>(b)].count;
     });
-    constexpr std::size_t kMostRoads = 6;  // limit of examined roads, the largest first
+    constexpr std::size_t kMostRoads = 6;  // limit of examined roads, the largest first; chosen
     if (order.size() > kMostRoads) order.resize(kMostRoads);
     if (options_.start) {
       const int wanted = labels[coarse_of(space_.to_cells(*options_.start) / join_)];
@@ -128,6 +132,7 @@ class LoopFinder {
     return best;
   }
 
+  /// The road `label` round its largest hole; none without a hole.
   std::optional<Ring> ring_of(const std::vector<int>& labels, int label, bool is_at_border,
                               double clearance) const {
     Ring ring{.road = Mask(coarse_.size(), 0), .is_at_border = is_at_border};
@@ -155,7 +160,7 @@ class LoopFinder {
                       clamped(fine.y() / stride_, coarse_.height));
   }
 
-  /// The roomiest cell of the road right of the obstacle.
+  /// Roomiest cell of the road right of the obstacle, where the way round begins and ends.
   [[nodiscard]] std::size_t gate_of(const Ring& ring) const {
     const Place centre = coarse_.place(ring.centre);
     std::size_t best = ring.centre;
@@ -174,8 +179,9 @@ class LoopFinder {
     return best;
   }
 
-  /// The cheapest way from the gate round the obstacle and back (Dijkstra): a step costs its length, more
-  /// near walls. How often a way has gone round is counted on a ray that begins at the obstacle.
+  /// Cheapest way from the gate round the obstacle and back (Dijkstra). A step costs its length, and more
+  /// near walls. Turns round the obstacle are counted where a way crosses the ray from the obstacle to the
+  /// right.
   [[nodiscard]] std::vector<Vec2> way_round(const Ring& ring) const {
     const std::size_t gate = gate_of(ring);
     if (gate == ring.centre) return {};
@@ -211,26 +217,25 @@ class LoopFinder {
       if (so_far > cost[index]) continue;
       const Place at = coarse_.place(index);
       for (int n = 0; n < 8; ++n) {
-        const Place to{at.x + kNeighbours[n].x, at.y + kNeighbours[n].y};
+        const Place to = neighbour(at, n);
         if (!coarse_.has(to.x, to.y)) continue;
         const std::size_t next = coarse_.at(to.x, to.y);
-        if (ring.road[next] == 0) continue;
         const float total = so_far + step_cost(index, next, n);
-        if (total >= cost[next]) continue;
+        if (ring.road[next] == 0 || total >= cost[next]) continue;
         cost[next] = total;
         turns[next] = static_cast<std::int8_t>(std::clamp(turns[index] + crossing(at, to), -100, 100));
         back[next] = static_cast<std::int8_t>(n);
         open.emplace(total, next);
       }
     }
-    // The cheapest step that joins two ways which together go round once.
+    // Cheapest step between two ways from the gate that together go round once.
     float best = kUnseen;
     std::size_t one = gate, other = gate;
     for (std::size_t i = 0; i < cost.size(); ++i) {
       if (cost[i] == kUnseen) continue;
       const Place at = coarse_.place(i);
       for (int n = 0; n < 8; ++n) {
-        const Place to{at.x + kNeighbours[n].x, at.y + kNeighbours[n].y};
+        const Place to = neighbour(at, n);
         if (!coarse_.has(to.x, to.y)) continue;
         const std::size_t next = coarse_.at(to.x, to.y);
         if (ring.road[next] == 0 || turns[i] + crossing(at, to) - turns[next] != 1) continue;
@@ -247,22 +252,31 @@ class LoopFinder {
     trace(back, gate, one, line);
     std::reverse(line.begin(), line.end());
     trace(back, gate, other, line);
-    if (!line.empty()) line.pop_back();  // the gate again
+    if (!line.empty()) line.pop_back();  // the gate is the first point already
     return line;
   }
 
+  /// Adds the way from a cell back to the gate.
   void trace(const std::vector<std::int8_t>& back, std::size_t gate, std::size_t from,
              std::vector<Vec2>& line) const {
     for (std::size_t i = from;;) {
       const Place at = coarse_.place(i);
-      line.push_back({(at.x + 0.5) * stride_, (at.y + 0.5) * stride_});
+      line.push_back(centre_of(i));
       if (i == gate || back[i] < 0) return;
       const Place& step = kNeighbours[back[i]];
       i = coarse_.at(at.x - step.x, at.y - step.y);
     }
   }
 
-  /// Free room around a place, between the centres of cells [cells].
+  [[nodiscard]] Vec2 centre_of(std::size_t coarse) const {
+    const Place at = coarse_.place(coarse);
+    return {(at.x + 0.5) * stride_, (at.y + 0.5) * stride_};
+  }
+  static Place neighbour(const Place& at, int n) {
+    return {at.x + kNeighbours[n].x, at.y + kNeighbours[n].y};
+  }
+
+  /// Distance from any place to the nearest wall, interpolated between the centres of cells [cells].
   [[nodiscard]] double room_at(const Vec2& place) const {
     const double x = std::clamp(place.x() - 0.5, 0.0, fine_.width - 1.001);
     const double y = std::clamp(place.y() - 0.5, 0.0, fine_.height - 1.001);
@@ -276,6 +290,7 @@ class LoopFinder {
            v * ((1.0 - u) * value(x0, y1) + u * value(x1, y1)) - 0.5;
   }
 
+  /// Unit vector to the left of the line at point i.
   static Vec2 left_of(const std::vector<Vec2>& line, std::size_t i, std::size_t reach) {
     const std::size_t count = line.size();
     const Vec2 along = line[(i + reach) % count] - line[(i + count - reach) % count];
@@ -283,7 +298,9 @@ class LoopFinder {
     return length > 0.0 ? Vec2{-along.y() / length, along.x() / length} : Vec2{0.0, 1.0};
   }
 
-  /// Moves each point across the line to the place with most room, and keeps the line even and smooth.
+  /// Moves each point across the line to the place with most room, in rounds. Each ends with smoothing and
+  /// even spacing. The numbers were chosen: reach and spacing as shares of the half width, four places to
+  /// each side, a slight preference for staying (1e-3), half of each move.
   [[nodiscard]] std::vector<Vec2> moved_to_the_middle(std::vector<Vec2> line) const {
     std::vector<double> room;
     for (const Vec2& point : line) room.push_back(room_at(point));
@@ -316,7 +333,8 @@ class LoopFinder {
     return line;
   }
 
-  /// Distance to the first blocked cell in a direction [cells].
+  /// Distance to the first blocked cell in a direction, at most `most` [cells]. The field gives the step:
+  /// less 1.5 cells for the sides of cells.
   [[nodiscard]] double cast(const Vec2& from, const Vec2& direction, double most) const {
     double away = 0.0;
     while (away < most) {
@@ -328,8 +346,8 @@ class LoopFinder {
     return most;
   }
 
-  /// Cells make teeth of an oblique wall: the edge runs along their tips. The least of three neighbours, and
-  /// the mean of five of those.
+  /// Distances to an oblique wall without the teeth that its cells make: the road's edge runs along their
+  /// tips. Takes the least of three neighbours, and the mean of five of those.
   static std::vector<double> without_teeth(const std::vector<double>& side) {
     const std::size_t count = side.size();
     std::vector<double> least(count), even(count);
@@ -343,6 +361,7 @@ class LoopFinder {
     return even;
   }
 
+  /// The line with its widths, in the world.
   [[nodiscard]] FreeLoop measured(const std::vector<Vec2>& line) const {
     FreeLoop loop{.spots = spots_};
     const std::size_t count = line.size();
@@ -368,13 +387,13 @@ class LoopFinder {
     return fmt::format("({:.2f}, {:.2f})", world.x(), world.y());
   }
 
-  /// Reason for no loop: an open end, a narrow place, or unknown cells.
+  /// Message that says why there is no loop: a narrow place, an open end, or unknown cells.
   std::string why_none() {
     if (options_.start && clearance_at(coarse_of(space_.to_cells(*options_.start) / join_)) <= 0.0)
       return fmt::format("start: got ({}, {}), expected a place in free space", options_.start->x(),
                          options_.start->y());
     const std::pair<std::vector<int>, int> largest = largest_;
-    if (const std::optional<Ring> narrow = find_ring(0.6)) {
+    if (const std::optional<Ring> narrow = find_ring(0.6)) {  // [cells]: any way through
       const std::vector<Vec2> line = way_round(*narrow);
       if (!line.empty()) {
         const auto tightest = std::min_element(
@@ -417,9 +436,9 @@ class LoopFinder {
       for (std::size_t i = 0; i < open.size(); ++i) {
         const Place at = coarse_.place(open[i]);
         for (int n = 0; n < 4; ++n) {
-          const int x = at.x + kNeighbours[n].x, y = at.y + kNeighbours[n].y;
-          if (!coarse_.has(x, y)) continue;
-          const std::size_t next = coarse_.at(x, y);
+          const Place to = neighbour(at, n);
+          if (!coarse_.has(to.x, to.y)) continue;
+          const std::size_t next = coarse_.at(to.x, to.y);
           if (labels[next] != label || is_seen[next] != 0) continue;
           is_seen[next] = 1;
           open.push_back(next);
@@ -431,22 +450,18 @@ class LoopFinder {
         static_cast<std::size_t>(std::find(labels.begin(), labels.end(), label) - labels.begin());
     const std::size_t one = farthest(any);
     const std::size_t other = farthest(one);
-    const auto centre = [&](std::size_t index) {
-      const Place at = coarse_.place(index);
-      return Vec2{(at.x + 0.5) * stride_, (at.y + 0.5) * stride_};
-    };
-    return {centre(one), centre(other)};
+    return {centre_of(one), centre_of(other)};
   }
 
   const FreeSpace& space_;
   LoopOptions options_;
-  int join_ = 1;       ///< cells of the map in one of the fine grid
-  int stride_ = 1;     ///< fine cells between two of the coarse grid
+  int join_ = 1;       ///< side of a fine cell, in cells of the map
+  int stride_ = 1;     ///< side of a coarse cell, in fine cells
   double cell_ = 0.0;  ///< side of a fine cell [m]
   Grid fine_, coarse_;
-  Mask blocked_;
-  std::vector<float> field_;
-  int spots_ = 0;
+  Mask blocked_;                                ///< walls, on the fine grid
+  std::vector<float> field_;                    ///< distance of each fine cell to the nearest wall [cells]
+  int spots_ = 0;                               ///< spots that remove_spots() freed
   std::pair<std::vector<int>, int> largest_{};  ///< labels of the coarse grid, and its largest road's label
 };
 

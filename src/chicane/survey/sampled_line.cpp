@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Sampled lines: polylines, the plane of geographic coordinates, outlines of cells, and the middle between
-// cones.
+// Geometry of surveyed points: polylines, the plane of geographic coordinates, and the line between cones,
+// which is the zero line of a field on a raster: distance to the right cones less distance to the left ones.
 #include "chicane/survey/sampled_line.hpp"
 
 #include <fmt/format.h>
@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -49,14 +48,14 @@ std::vector<Vec2> sampled(std::span<const Vec2> line, bool closed, double spacin
   return points;
 }
 
-double turned_area(std::span<const Vec2> line) noexcept {
-  double area = 0.0;
+double signed_area(std::span<const Vec2> line) noexcept {
+  double doubled = 0.0;
   for (std::size_t i = 0; i < line.size(); ++i) {
     const Vec2 a = line[i] - line[0];
     const Vec2 b = line[(i + 1) % line.size()] - line[0];
-    area += a.x() * b.y() - a.y() * b.x();
+    doubled += a.x() * b.y() - a.y() * b.x();
   }
-  return area;
+  return 0.5 * doubled;
 }
 
 double median(std::vector<double> values) {
@@ -70,7 +69,7 @@ namespace {
 constexpr double kRadius = 6378137.0;                      // radius of the equator, WGS 84 [m]
 constexpr double kSquaredEccentricity = 6.69437999014e-3;  // WGS 84
 
-/// [deg] in (-180, 180], also across the date line.
+/// Difference of two longitudes in [-180, 180] deg, also across the date line.
 double difference(double a, double b) noexcept { return std::remainder(a - b, 360.0); }
 
 }  // namespace
@@ -108,17 +107,17 @@ std::vector<Vec2> to_plane(std::span<const Geographic> places) {
 
 namespace {
 
-constexpr std::size_t kMostCones = 20000;
-constexpr double kMostExtent = 20000.0;  // [m]
-constexpr double kMostCells = 2e6;
-constexpr double kFinest = 0.05;     // side of a cell [m]
-constexpr double kGap = 1.6;         // times the median distance of neighbours
-constexpr double kLeastShare = 0.2;  // narrowest width of a course over the median one
-constexpr std::size_t kNear = 4;     // distances to each side that a gap is compared with
-constexpr double kFarAway =
-    3.0;  // a line is between cones where they are nearer than so many median half widths
+constexpr std::size_t kMostCones = 20000;  // bounds time; chosen
+constexpr double kMostExtent = 20000.0;    // [m] extent of a course; chosen
+constexpr double kMostCells = 2e6;         // cells of the raster; bounds memory; chosen
+constexpr double kFinest = 0.05;           // [m] least side of a cell
+constexpr double kGap = 1.6;               // length of a reported gap over the median of its neighbours
+constexpr std::size_t kNear = 4;           // neighbours on each side that a gap is compared with
+constexpr double kLeastShare = 0.2;        // narrowest width of a course over the median one
+constexpr double kFarAway = 3.0;           // distance to the cones that ends a line, over its lower quartile
+constexpr std::size_t kLeastPoints = 8;    // points of a zero line that is no noise; chosen
 
-/// A square raster round the cones.
+/// Raster of square cells round the cones.
 struct Raster {
   Vec2 low{};
   double cell = 0.1;  ///< [m]
@@ -152,12 +151,12 @@ struct Raster {
   }
 };
 
-/// Lines along which a field is zero, with its positive side on the left: marching squares.
+/// Lines along which a field is zero, by marching squares. The field is positive on their left.
 class ZeroLines {
  public:
   ZeroLines(const Raster& raster, const std::vector<float>& field) : raster_{raster}, field_{field} {}
 
-  /// The closed ones and the open ones, in W.
+  /// All zero lines [m], each with true if it is closed.
   std::vector<std::pair<std::vector<Vec2>, bool>> find() {
     for (int y = 0; y + 1 < raster_.height; ++y)
       for (int x = 0; x + 1 < raster_.width; ++x) add_cell(x, y);
@@ -228,7 +227,7 @@ class ZeroLines {
   std::map<Edge, Edge> next_;
 };
 
-/// The zero line that is near the cones for longest. Open ones are cut off where they leave the cones.
+/// Longest zero line near the cones. Open lines are cut off where they leave the cones.
 std::optional<std::pair<std::vector<Vec2>, bool>> line_of(const Raster& raster,
                                                           const std::vector<float>& to_left,
                                                           const std::vector<float>& to_right) {
@@ -237,10 +236,9 @@ std::optional<std::pair<std::vector<Vec2>, bool>> line_of(const Raster& raster,
   std::optional<std::pair<std::vector<Vec2>, bool>> best;
   double most = 0.0;
   for (auto& [line, is_closed] : ZeroLines(raster, field).find()) {
-    if (line.size() < 8) continue;
     std::vector<double> room;
     for (const Vec2& point : line) room.push_back(static_cast<double>(to_left[raster.of(point)]));
-    // Width by the cones nearby: a bisector runs off to infinity beyond the last ones.
+    // The lower quartile is a width between cones: beyond the last ones an open line runs off to infinity.
     std::vector<double> sorted = room;
     std::sort(sorted.begin(), sorted.end());
     const double near = kFarAway * sorted[sorted.size() / 4];
@@ -255,8 +253,8 @@ std::optional<std::pair<std::vector<Vec2>, bool>> line_of(const Raster& raster,
         kept.clear();
       }
       line = longest;
-      if (line.size() < 8) continue;
     }
+    if (line.size() < kLeastPoints) continue;
     const double length = length_of(line, is_closed);
     if (length > most) {
       most = length;
@@ -266,20 +264,14 @@ std::optional<std::pair<std::vector<Vec2>, bool>> line_of(const Raster& raster,
   return best;
 }
 
-/// Cones of a side in the order of the line.
+/// Cones of one side, sorted by the nearest point of the line; cones in one place are kept once.
 std::vector<Vec2> in_order(const std::vector<Vec2>& side, const std::vector<Vec2>& line) {
-  std::vector<std::pair<std::size_t, Vec2>> placed;
+  std::vector<std::pair<std::ptrdiff_t, Vec2>> placed;
   for (const Vec2& cone : side) {
-    std::size_t nearest = 0;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < line.size(); ++i) {
-      const double away = (line[i] - cone).squared_norm();
-      if (away < least) {
-        least = away;
-        nearest = i;
-      }
-    }
-    placed.emplace_back(nearest, cone);
+    const auto nearest = std::min_element(line.begin(), line.end(), [&](const Vec2& a, const Vec2& b) {
+      return (a - cone).squared_norm() < (b - cone).squared_norm();
+    });
+    placed.emplace_back(nearest - line.begin(), cone);
   }
   std::stable_sort(placed.begin(), placed.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -289,7 +281,7 @@ std::vector<Vec2> in_order(const std::vector<Vec2>& side, const std::vector<Vec2
   return ordered;
 }
 
-void name_gaps(const std::vector<Vec2>& cones, bool is_closed, bool is_left, std::vector<ConeGap>& gaps) {
+void add_gaps(const std::vector<Vec2>& cones, bool is_closed, bool is_left, std::vector<ConeGap>& gaps) {
   std::vector<double> steps;
   const std::size_t count = is_closed ? cones.size() : cones.size() - 1;
   for (std::size_t i = 0; i < count; ++i) steps.push_back((cones[(i + 1) % cones.size()] - cones[i]).norm());
@@ -333,10 +325,10 @@ Result<ConeRoad> line_between(const Cones& given) {
   const std::vector<Vec2> along = sampled(rough->first, road.is_closed, 0.5);
   const std::vector<Vec2> left = in_order(cones.left, along), right = in_order(cones.right, along);
   if (left.size() < 2 || right.size() < 2) return fail(ErrorCode::kParse, "cones: got a side in one place");
-  name_gaps(left, road.is_closed, true, road.gaps);
-  name_gaps(right, road.is_closed, false, road.gaps);
+  add_gaps(left, road.is_closed, true, road.gaps);
+  add_gaps(right, road.is_closed, false, road.gaps);
 
-  // Points along the fences that join the cones, near enough to each other for the raster.
+  // Fences between the cones, as points closer than the cells of the raster.
   to_left = raster.distances(sampled(left, road.is_closed, 0.5 * raster.cell));
   to_right = raster.distances(sampled(right, road.is_closed, 0.5 * raster.cell));
   const auto middle = line_of(raster, to_left, to_right);

@@ -22,9 +22,9 @@ namespace {
 
 using protocol::Json;
 
-constexpr std::size_t kBatch = 96;  ///< trials that share what comes before their faults, at least
-constexpr const char* kOwn = "own";
-constexpr const char* kLasts = "inf";
+constexpr std::size_t kBatch = 96;     // least trials that share the laps before their faults; chosen
+constexpr const char* kOwn = "own";    // value of for_s: duration of the fault's own kind
+constexpr const char* kLasts = "inf";  // value of for_s: to the end of the trial
 
 std::vector<std::string> faults_of(const Campaign& campaign) {
   std::vector<std::string> names = campaign.faults;
@@ -38,7 +38,7 @@ std::string duration_text(double duration) {
   return duration >= run::kLasting ? std::string(kLasts) : number_text(duration);
 }
 
-/// The one or two faults of a group; kInvalidArgument for a name that is none.
+/// Faults of a group's name, "a" or "a+b". Fails with kInvalidArgument for an unknown fault.
 Result<std::vector<sim::Fault>> parts_of(const std::string& names) {
   std::vector<sim::Fault> parts;
   for (std::size_t begin = 0; begin <= names.size();) {
@@ -51,7 +51,7 @@ Result<std::vector<sim::Fault>> parts_of(const std::string& names) {
   return parts;
 }
 
-/// Duration of the axis for_s [s]; "own": the longest that one of the faults has.
+/// Duration of a group's faults [s]; for "own" that of the fault whose kind lasts longest.
 double duration_of(const CampaignGroup& group, const std::vector<sim::Fault>& parts) {
   if (group.lasts == kLasts) return run::kLasting;
   if (group.lasts != kOwn) return number_in(group.lasts).value_or(0.0);
@@ -60,7 +60,7 @@ double duration_of(const CampaignGroup& group, const std::vector<sim::Fault>& pa
   return longest;
 }
 
-/// The moments of one group depend on its names and the seed alone.
+/// Moments at which the faults of a group begin [s]. They depend on its names and the seed alone.
 std::vector<double> onsets_of(const Campaign& campaign, const CampaignGroup& group, double lap_time) {
   std::vector<double> onsets;
   if (campaign.onsets == 0) {
@@ -110,7 +110,7 @@ Result<Place> place_of(const Campaign& campaign, const CampaignGroup& group) {
   return Place{std::move(*scenario), std::move(*lap)};
 }
 
-constexpr const char* kDuration = "for_s";  ///< a text, because it may be "inf"
+constexpr const char* kDuration = "for_s";  // key of a text, because the duration may be "inf"
 
 std::string text_of(const std::vector<CampaignTrial>& trials) {
   Json all = Json::array();
@@ -122,13 +122,13 @@ std::string text_of(const std::vector<CampaignTrial>& trials) {
   return protocol::json_text(Json{{"trials", std::move(all)}});
 }
 
-/// Drives groups of trials. Those that follow at the same place are driven with one that is asked for.
+/// Driver of groups of trials. With a group it drives the following ones of the same place, and keeps them.
 class Driver {
  public:
   Driver(const Campaign& campaign, int jobs, const std::atomic<bool>& stop)
       : campaign_{campaign}, plan_{plan_of(campaign)}, jobs_{jobs}, stop_{stop} {}
 
-  /// The rest of the group's line; none when it was stopped.
+  /// The group's trials as JSON, for its line in the file; none if the campaign was stopped.
   Result<std::optional<std::string>> drive(std::uint64_t run) {
     const CampaignGroup group = group_at(plan_, run);
     if (!place_ || !is_same_place(group, at_)) {
@@ -198,9 +198,9 @@ class Driver {
   Plan plan_;
   int jobs_;
   const std::atomic<bool>& stop_;
-  CampaignGroup at_;                            ///< any group of the place
+  CampaignGroup at_;                            ///< a group that is driven at place_
   std::optional<Result<Place>> place_;          ///< place of the last group
-  std::map<std::uint64_t, std::string> ready_;  ///< driven before they were asked for
+  std::map<std::uint64_t, std::string> ready_;  ///< groups that were driven in advance, by run
 };
 
 CampaignTrial trial_in(const Json& json) {

@@ -40,7 +40,7 @@ bool is_column(std::string_view text) {
   return text == "clean" || find_column(place_in(text).name) != nullptr;
 }
 
-/// Stands for every other clean case on the right of a comparison.
+/// Name of a case on the right of a comparison that means: every other clean case.
 constexpr std::string_view kEach = "each";
 
 std::optional<Condition::Value> value_in(const std::string& text, const std::vector<Case>& cases) {

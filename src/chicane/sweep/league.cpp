@@ -25,7 +25,7 @@ namespace {
 using protocol::YamlEntry;
 using protocol::YamlNode;
 
-/// Columns on the page.
+/// Columns of the results that the page and the tables show.
 constexpr std::array kKept{"completed",
                            "end_reason",
                            "laps_completed",
@@ -98,7 +98,7 @@ class LeagueReader : private detail::SettingsReader {
                list("names", [&](const YamlNode& name) { external.disturbances.push_back(name.text); })}});
   }
 
-  /// Fills in what the entry leaves out: everything.
+  /// Fills in tracks, cars and disturbances that the entry leaves out: all of the league's.
   void complete(ExternalEntry& entry) {
     if (entry.tracks.empty()) entry.tracks = league_.tracks;
     if (entry.cars.empty()) entry.cars = league_.cars;
@@ -315,7 +315,7 @@ Result<void> BesideFile::add_trial(const ExternalTrial& trial, const Result<tele
 
 namespace {
 
-/// The runs of our own controllers, by their number; those that are missing stay without numbers.
+/// Reads the results of our own controllers; runs that are missing in the file stay without numbers.
 Result<void> read_own(const League& league, const std::string& file, LeagueResults& results) {
   std::vector<bool> seen(results.cells.size(), false);
   const auto take = [&](std::uint64_t run, const Json& json) -> Result<void> {
@@ -352,7 +352,8 @@ std::string simulate_command(const ExternalTrial& trial) {
                      trial.track, trial.car, rest);
 }
 
-/// `trials`: of the last cells.
+/// Reads one line of the file beside the results: a limit, the times of a run, or an external trial. The last
+/// cells of `results` belong to `trials`, in their order.
 void read_beside(const Json& json, const std::vector<ExternalTrial>& trials, LeagueResults& results) {
   if (json.contains("limit") && json.contains("lap_time_s"))
     results.bounds[{json["limit"].value("track", ""), json["limit"].value("car", "")}] = json["lap_time_s"];

@@ -23,7 +23,7 @@ struct LeagueTable {
   ResultTable table;
 };
 
-/// Columns of the standings behind the gap; the last one says nothing of another program.
+/// Columns of the standings after the gap. The last one, iterations, is not measured of other programs.
 constexpr std::array kFigures{"rms_lateral_error_m", "min_edge_distance_m", "max_lateral_acceleration_mps2",
                               "steering_rate_rms_radps", "mean_iterations"};
 
@@ -47,7 +47,7 @@ class LeagueTables {
   [[nodiscard]] static Json lap_of(const LeagueCell& cell) {
     return cell.is_clean ? Json(cell.number("lap_time_s")) : Json();
   }
-  /// Excess over the limit [%].
+  /// Excess of the lap time over the limit [%].
   [[nodiscard]] double gap(const LeagueCell& cell) const {
     const auto bound = results_.bounds.find({cell.track, cell.car});
     if (bound == results_.bounds.end() || !cell.is_clean) return std::nan("");
@@ -55,7 +55,7 @@ class LeagueTables {
   }
 
  private:
-  /// The gap and kFigures.
+  /// Values of a cell: the gap and kFigures; NaN if not measured.
   [[nodiscard]] std::vector<double> figures_of(const LeagueCell& cell) const {
     std::vector<double> figures{gap(cell)};
     for (const char* column : kFigures) figures.push_back(cell.number(column));
@@ -68,7 +68,7 @@ class LeagueTables {
     int clean = 0, tried = 0, disturbed_clean = 0, disturbed = 0;
     std::array<double, kFigures.size() + 1> sums{}, counts{};  ///< gap and kFigures, where measured
 
-    /// NaN: nowhere measured.
+    /// Mean of a figure; NaN if it was measured nowhere.
     [[nodiscard]] double mean(std::size_t i) const { return sums[i] / counts[i]; }
   };
 

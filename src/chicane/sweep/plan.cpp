@@ -22,7 +22,8 @@
 namespace chicane::sweep {
 namespace {
 
-/// Joe and Kuo, new-joe-kuo-6: degree and coefficients of a primitive polynomial, first direction numbers.
+/// Row of the table new-joe-kuo-6.21201 of Joe and Kuo: degree and coefficients of a primitive polynomial,
+/// and the first direction numbers.
 struct Direction {
   unsigned degree;
   unsigned coefficients;
@@ -50,7 +51,7 @@ constexpr std::array<Direction, kSobolDimensions - 1> kDirections{{
     {7, 1, {1, 3, 7, 11, 23, 15, 103}},
     {7, 4, {1, 3, 7, 13, 13, 15, 69}},
 }};
-constexpr unsigned kBits = 32;
+constexpr unsigned kBits = 32;  // of a Sobol number
 
 using SobolNumbers = std::array<std::uint32_t, kBits>;
 
@@ -78,14 +79,15 @@ constexpr auto kSobolNumbers = [] {
   return columns;
 }();
 
-/// A number that depends on all of its arguments in no simple way.
+/// Pseudo-random number from three arguments. The odd factors are those of SplitMix64 and xxHash64.
 std::uint64_t mixed(std::uint64_t seed, std::uint64_t a, std::uint64_t b) noexcept {
   Random random(seed * 0x9e3779b97f4a7c15ULL ^ (a * 0xc2b2ae3d27d4eb4fULL) ^ (b * 0x165667b19e3779f9ULL));
   static_cast<void>(random.bits());
   return random.bits();
 }
 
-/// A permutation of [0, count): a Feistel network over the next power of four, walked until it is inside.
+/// Place of `index` in a permutation of [0, count): a Feistel network over the next power of four, applied
+/// again until the number is below `count`.
 std::uint32_t permuted(std::uint32_t index, std::uint32_t count, std::uint64_t key) noexcept {
   const unsigned half = (static_cast<unsigned>(std::bit_width(count - 1)) + 1) / 2;
   const std::uint64_t mask = (std::uint64_t{1} << half) - 1;

@@ -17,8 +17,8 @@ namespace chicane::sweep::detail {
 namespace {
 
 constexpr double kMostCount = 4294967295.0;  // largest 32-bit number
-constexpr double kLeastFactor = 1.01;
-constexpr double kLeastWithin = 1e-4;
+constexpr double kLeastFactor = 1.01;        // least step of a search's ladder: bounds its trials; chosen
+constexpr double kLeastWithin = 1e-4;        // finest accuracy of a search; chosen
 
 }  // namespace
 
@@ -118,7 +118,7 @@ namespace {
 using protocol::YamlEntry;
 using protocol::YamlNode;
 
-constexpr std::size_t kMostAxes = 20;
+constexpr std::size_t kMostAxes = 20;           // chosen
 constexpr std::string_view kFolder = "/*.csv";  ///< suffix of a folder: all tracks in it
 constexpr double kMostSamples = 4294967295.0;   // largest 32-bit number
 

@@ -24,7 +24,7 @@ namespace {
 
 using protocol::Json;
 
-constexpr std::size_t kLongestLine = 1U << 20U;
+constexpr std::size_t kLongestLine = 1U << 20U;  // [bytes] bounds memory; chosen
 
 tl::unexpected<Error> io_failure(const std::string& path) {
   return fail(ErrorCode::kIo, fmt::format("{}: cannot be written: {}", path, std::strerror(errno)));
@@ -53,7 +53,7 @@ OnLine of_runs(const OnLine& on_line) {
   };
 }
 
-/// Reads the lines about runs; `on_first` gets an empty text where no first line is whole.
+/// Reads the lines about runs. `on_first` gets the first line, or an empty text if the file has no whole one.
 Result<void> read_results(const std::string& file,
                           const std::function<Result<void>(const std::string&)>& on_first,
                           const OnLine& on_run) {
@@ -122,7 +122,7 @@ Result<Header> parse_header(std::string_view line, const std::string& file) {
     header.columns = json.at("columns").get<std::vector<std::string>>();
     if (header.runs <= Plan::kMostRuns) return header;
   } catch (const Json::exception&) {
-    // said below
+    // the message follows
   }
   return fail(refusal(file + ":1", line, "the first line of a sweep's results", ErrorCode::kParse));
 }
@@ -254,10 +254,10 @@ Result<ResultFile> ResultFile::open(const std::string& path, const Plan& plan, c
 
 namespace {
 
-constexpr std::size_t kMostNamed = 10000;  // limit of missing runs in a message's search
-constexpr std::size_t kMostRanges = 10;
+constexpr std::size_t kMostNamed = 10000;  // missing runs that are listed for a message; more are counted
+constexpr std::size_t kMostRanges = 10;    // ranges of missing runs that the message names; chosen
 
-/// Line of each run: 16 bytes a run, found or not.
+/// Place of a run's line in the merged files, in 16 bytes.
 struct Found {
   std::uint32_t file = 0;
   std::uint32_t size = 0;  ///< 0: not found

@@ -22,7 +22,7 @@ namespace {
 
 using protocol::Json;
 
-/// Compared figures of one run.
+/// Figures of one run that compare() compares.
 struct ComparedRun {
   std::vector<double> laps{};  ///< times [s]
   std::int64_t off = 0;        ///< times off the road
@@ -131,7 +131,7 @@ Json shown_cell(const Json& cell, const std::string& decimals) {
   return cell.is_object() ? cell : Json(plain_text(cell));
 }
 
-/// Number of letters in a text: continuing bytes of UTF-8 are none.
+/// Number of letters in a text of UTF-8: its bytes without the continuing ones.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
@@ -168,8 +168,8 @@ void ResultTable::add(Cells cells) {
   rows_.push_back(std::move(cells));
 }
 
-/// A line of titles, `rule` and a line for each row, without the first `shared` columns: these are a line
-/// above the rows that share them.
+/// Text of the table: a line of titles, `rule`, and a line for each row. The first `shared` columns have a
+/// line of their own above the rows with the same values.
 std::string ResultTable::lines(std::size_t shared, std::string_view begin, std::string_view rule,
                                std::string (*write)(const Column&, const std::string&)) const {
   const auto line = [&](std::span<const Column> columns, const auto& cell_of) {
@@ -298,7 +298,8 @@ std::size_t place_in(const std::vector<std::string>& values, const std::string& 
   return static_cast<std::size_t>(std::find(values.begin(), values.end(), value) - values.begin());
 }
 
-/// The nearest of `values` where all are numbers; the same text otherwise. values.size(): none.
+/// Place of the value nearest to `wanted` if both are numbers, otherwise of the same text; values.size():
+/// none.
 std::size_t nearest_place(const std::vector<std::string>& values, const std::string& wanted) {
   const std::optional<double> number = number_in(wanted);
   const auto distance = [&](const std::string& value) {
@@ -344,7 +345,7 @@ class MapMaker {
                        [](const std::string& value) { return !number_in(value); });
   }
 
-  /// The combinations of these axes' values, as they come.
+  /// Combinations of these axes' values, in the order of the runs.
   [[nodiscard]] std::vector<std::vector<std::string>> groups_of(const std::vector<std::size_t>& axes) const {
     std::vector<std::vector<std::string>> groups;
     for (const MapRun& run : runs_) {

@@ -24,11 +24,11 @@ using detail::ByNumber;
 using protocol::ReportDocument;
 using json = protocol::Json;
 
-constexpr std::size_t kMostValues = 60;  // limit of values on an axis in tables; more become intervals
-constexpr int kMostBins = 12;
-constexpr std::size_t kMostMaps = 60;  // limit of maps on a page
+constexpr std::size_t kMostValues = 60;  // values on an axis of a table; more become intervals; chosen
+constexpr int kMostBins = 12;            // limit of these intervals; chosen
+constexpr std::size_t kMostMaps = 60;    // limit of maps on a page; chosen
 
-/// Columns that are summed up, where a sweep has kept them.
+/// Columns of the tables, if the sweep has kept them; `is_low_good`: the mean is shown, otherwise the least.
 struct Shown {
   const char *column, *title;
   bool is_low_good;
@@ -46,11 +46,11 @@ struct Run {
   std::uint64_t number = 0;
   std::vector<std::string> values;  ///< values of the axes
   std::array<double, kShown.size()> numbers{};
-  bool is_clean = false;  ///< no tyre off the road, and all laps where a number was asked for
+  bool is_clean = false;  ///< no tyre off the road, and all laps driven if a number was set
   std::string error;
 };
 
-/// Common values of a group of runs.
+/// Counts, sums, least and greatest values of a group of runs.
 struct Group {
   std::uint64_t runs = 0, clean = 0;
   std::array<double, kShown.size()> sums{}, least{}, most{};
@@ -161,7 +161,7 @@ class Page {
     runs_.push_back(std::move(run));
   }
 
-  /// Whether a number of laps was asked for: otherwise none has to be completed.
+  /// Whether the run has a number of laps to complete.
   [[nodiscard]] bool wants_laps(const Run& run) const {
     std::string laps;
     for (const auto& [key, value] : header_.fixed)
@@ -208,7 +208,7 @@ class Page {
            header_.columns.end();
   }
 
-  /// `first` and the names of the columns that are kept.
+  /// Titles `first`, followed by those of the columns that are kept.
   [[nodiscard]] std::vector<std::string> with_columns(std::vector<std::string> first) const {
     for (std::size_t i = 0; i < kShown.size(); ++i)
       if (is_kept(i)) first.emplace_back(kShown[i].title);

@@ -25,7 +25,7 @@ constexpr int kSearchDigits = 4;  // digits of a tried value: 12.35
 
 std::string quoted(const std::string& text) { return protocol::json_text(protocol::Json(text)); }
 
-/// A number as a number, all else as text.
+/// Value of a setting as JSON: a number, or a quoted text.
 std::string setting_json(const std::string& key, const std::string& text) {
   const protocol::Parameter* row = protocol::find(key);
   const bool is_text = row != nullptr && (row->option.kind == protocol::Kind::kText ||
@@ -34,12 +34,12 @@ std::string setting_json(const std::string& key, const std::string& text) {
   return is_json ? text : quoted(text);
 }
 
-/// Found, driven and failed runs, counted by all threads; and the first failure of the file.
+/// Count of found, driven and failed runs, for all threads, and the first error of writing the file.
 class Tally {
  public:
   Tally(const SweepOptions& options, Progress progress) : options_{options}, progress_{progress} {}
 
-  /// `why` a run cannot be driven; null for one that was.
+  /// Counts a run. `why`: reason why it cannot be driven; null if it was driven.
   void add(const Error* why) {
     const std::lock_guard lock(mutex_);
     ++progress_.driven;
@@ -94,7 +94,7 @@ std::string columns_of(const Plan& plan, const RunOutcome& outcome) {
   return "{" + text + "}";
 }
 
-/// One search of find_largest().
+/// Search of find_largest(): down the ladder to the first clean value, then bisection.
 class Searcher {
  public:
   Searcher(const Search& search, const Settings& settings, run::Roads& roads, const std::atomic<bool>& stop)
@@ -142,7 +142,7 @@ class Searcher {
   run::Roads& roads_;
   const std::atomic<bool>& stop_;
   RunOutcome found_;
-  double unclean_ = 0.0;  ///< the smallest value above all clean ones; 0: none yet
+  double unclean_ = 0.0;  ///< smallest tried value above the clean ones; 0: none yet
   Error refusal_{ErrorCode::kInvalidArgument, ""};
 };
 

@@ -33,7 +33,7 @@ constexpr Column number(std::string_view name, std::string_view meaning) {
           [](const RunSummary& run) { return json_number(static_cast<double>(std::invoke(Get, run))); }};
 }
 
-/// Formats a list with a number for each lap.
+/// A column with a list that has a number for each lap.
 template <auto Member>
 constexpr Column laps(std::string_view name, std::string_view meaning) {
   return {name, meaning, [](const RunSummary& run) {
@@ -44,7 +44,7 @@ constexpr Column laps(std::string_view name, std::string_view meaning) {
           }};
 }
 
-/// A text of what guards the run.
+/// A column with one of the facts about the run's guard.
 template <auto Member>
 constexpr Column guard_column(std::string_view name, std::string_view meaning) {
   return {name, meaning, [](const RunSummary& run) -> std::string {
@@ -177,7 +177,7 @@ std::string url_encoded(std::string_view text) {
   return encoded;
 }
 
-/// Settings with each key once: its last value, where that stood.
+/// Settings in which each key stands once, with its last value at the last place.
 Settings winning(const Settings& settings) {
   Settings last;
   for (const auto& setting : settings) {
@@ -187,7 +187,7 @@ Settings winning(const Settings& settings) {
   return last;
 }
 
-/// The key and value of the reference speed of whichever controller drives.
+/// Key and value of the reference speed, for the controller that drives; none without a scenario.
 std::optional<std::pair<std::string, std::string>> speed_setting(const protocol::Request& request) {
   const Result<scenario::Scenario> scenario = protocol::compose(request);
   if (!scenario) return std::nullopt;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tuning: an optimiser over keys of the schema, each evaluation a set of trials, with a log so that none is
-// driven twice.
+// Tuning: an optimiser varies numbers of a preset. Each evaluation drives a set of trials; a log keeps its
+// verdict, so that none is driven twice.
 #include "chicane/sweep/tune.hpp"
 
 #include <fmt/format.h>
@@ -106,8 +106,8 @@ Result<void> TuneLog::add(const Settings& values, const Verdict& verdict) {
   return file_.append(line_of(values, verdict));
 }
 
-/// First line for a task: its settings and the scenario that they mean, keys and objective, the program and
-/// its arithmetic. Not the optimiser, which changes no evaluation.
+/// First line of a task's log: settings and their scenario, keys, objective, program and its arithmetic. The
+/// optimiser is left out, because it changes no evaluation.
 std::string tune_head(const TuneTask& task, const scenario::Scenario& scenario,
                       const std::vector<std::string>& keys) {
   const Json json{{"tune", json_of(task.settings)},
@@ -125,10 +125,10 @@ namespace chicane::sweep {
 namespace {
 
 constexpr int kTuningDigits = 6;            // digits of a tuned value
-constexpr double kTimeLimitByHand = 600.0;  // [s]
-constexpr double kPatience = 1.5;           // limit over the time of the tuning by hand
+constexpr double kTimeLimitByHand = 600.0;  // [s] of a trial of the tuning by hand; chosen
+constexpr double kPatience = 1.5;  // time limit of other tunings over the time of the one by hand; chosen
 
-/// A number to change, on a logarithmic scale.
+/// Number that is varied, on a logarithmic scale between its bounds.
 struct Knob {
   std::string key;
   double low = 0.0, high = 0.0, by_hand = 0.0;
@@ -232,7 +232,9 @@ class Tuner {
     return verdict.passed == static_cast<int>(trials_.size());
   }
 
-  /// Objective, which further trials can only worsen: lap and steering are the first trial's.
+  /// Objective of a verdict, lower is better. Lap and steering are those of the first trial, and the margin
+  /// is the least one, so that further trials can only worsen it. The factors were chosen: they bring metres,
+  /// rad/s and seconds to one scale. 1000: no lap.
   [[nodiscard]] double objective(const Verdict& verdict) const {
     const double lap = std::isfinite(verdict.lap_time) ? verdict.lap_time : 1000.0;
     switch (task_.objective) {
@@ -246,8 +248,9 @@ class Tuner {
     return -10.0 * verdict.margin + 0.1 * lap;
   }
 
-  /// Score of a verdict; only its order counts: trials passed, then the failure of the next one, then its
-  /// margin.
+  /// Score of a verdict, lower is better. Only its order counts: 1e4 for each trial that is not passed, and
+  /// for the failed one at most 6000 if it was clean, by objective and margin, else from 7000 on, by its
+  /// progress.
   [[nodiscard]] double score_of(const Verdict& verdict) const {
     const int missing = static_cast<int>(trials_.size()) - verdict.passed;
     if (missing == 0) return objective(verdict);
@@ -341,10 +344,10 @@ class Tuner {
 };
 
 #ifdef CHICANE_HAS_NLOPT
-/// One search from `point` on with first steps of `step`, until it converges or the tuner has enough.
+/// One search from `point` with first steps of `step`, until it converges or Tuner::is_over().
 nlopt_result search_from(std::vector<double> point, double step, const TuneTask& task, Tuner& tuner) {
   constexpr std::array kAlgorithms{NLOPT_GN_CRS2_LM, NLOPT_GN_DIRECT_L, NLOPT_LN_SBPLX};
-  constexpr int kSameAgain = 20;  // NLopt counts a tuning that it asks for again
+  constexpr int kSameAgain = 20;  // NLopt counts repeated tunings, too: its limit is this many times ours
   struct Context {
     Tuner& tuner;
     nlopt_opt search;
@@ -370,7 +373,8 @@ nlopt_result search_from(std::vector<double> point, double step, const TuneTask&
   return result;
 }
 
-/// A search that has converged begins again from the best that there is, with other first steps.
+/// Searches again and again from the best point, each time with smaller first steps, until nothing new is
+/// found.
 Result<void> search(const TuneTask& task, Tuner& tuner) {
   nlopt_srand(static_cast<unsigned long>(task.seed));
   int before = -1;

@@ -1,10 +1,11 @@
+// Optional lines over the road, which the user switches on and off.
 import { persisted } from '../lib/persisted';
 
-/** Optional lines over the road; the choice is kept in the browser's storage. */
+/** The layers, true if drawn; the browser's storage keeps the choice. */
 export const layers = {
-  /** The plan of a second ago and the path driven since. */
+  /** Plan of a second ago, and the path driven since (hindsight.ts). */
   hindsight: persisted<boolean>('layer.hindsight', false),
-  /** The racing line: that of the fastest possible lap. */
+  /** Racing line of the fastest possible lap. */
   racingLine: persisted<boolean>('layer.racing-line', true),
 } as const;
 

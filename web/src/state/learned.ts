@@ -1,15 +1,18 @@
+// Texts of the car's estimated parameters: delay, steering and grip, relative to its configuration.
 import { fixed } from '../lib/format';
 import type { Frame } from '../protocol/messages';
 
+/** One estimated parameter. */
 export interface Learned {
   label: string;
   /** "+58 ± 6 ms": the estimate and two standard deviations. */
   text: string;
 }
 
-const DEGREES = 180 / Math.PI;
+const DEGREES = 180 / Math.PI; // in a radian
 
-function learned(
+/** The parameter as a list of one; empty if it is not estimated (NaN). Only differences get a plus sign. */
+function parameter(
   label: string,
   unit: string,
   digits: number,
@@ -22,12 +25,12 @@ function learned(
   return [{ label, text: `${sign}${fixed(value, digits)} ± ${fixed(2 * deviation, digits)}${unit}` }];
 }
 
-/** What the run has found out about its car, over the configuration; empty where nothing is estimated. */
+/** All parameters of the car that are estimated at the moment of `frame`. */
 export function learnedOf(frame: Frame): Learned[] {
   return [
-    ...learned('Delay over configured', ' ms', 0, frame.learned_delay_s * 1e3, frame.learned_delay_sd_s * 1e3, 0),
-    ...learned('Steering gain', '', 2, frame.learned_steer_gain, frame.learned_steer_gain_sd, 1),
-    ...learned(
+    ...parameter('Delay over configured', ' ms', 0, frame.learned_delay_s * 1e3, frame.learned_delay_sd_s * 1e3, 0),
+    ...parameter('Steering gain', '', 2, frame.learned_steer_gain, frame.learned_steer_gain_sd, 1),
+    ...parameter(
       'Steering offset, left positive',
       '°',
       2,
@@ -35,6 +38,6 @@ export function learnedOf(frame: Frame): Learned[] {
       frame.learned_steer_offset_sd_rad * DEGREES,
       0,
     ),
-    ...learned('Grip over configured', '', 2, frame.learned_grip, frame.learned_grip_sd, 1),
+    ...parameter('Grip over configured', '', 2, frame.learned_grip, frame.learned_grip_sd, 1),
   ];
 }

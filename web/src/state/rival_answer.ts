@@ -1,12 +1,13 @@
+// Answer of GET /rival.json, a race of two settings (docs/viewer.md): A is the run's own car, B the rival.
 import { fixed } from '../lib/format';
 import { columns, fields, list, number, text } from '../lib/json';
 import { mod } from '../lib/math';
 import { type LapSamples, UNKNOWN_MOMENT } from './lap_samples';
 
-// A race of two settings, as GET /rival.json gives it (docs/viewer.md): A is the run's own car, B the rival.
-
+/** Difference of lap times below which nobody wins [s]; chosen. */
 const SAME_S = 0.005;
 
+/** Columns of B's poses: time of the race, place in the world, and distance driven since the start. */
 export const POSE_COLUMNS = ['time_s', 'x_m', 'y_m', 'yaw_rad', 'steer_rad', 'speed_mps', 'distance_m'] as const;
 export type RacePoses = Readonly<Record<(typeof POSE_COLUMNS)[number], readonly number[]>>;
 
@@ -20,7 +21,7 @@ const readLaps = (value: unknown) =>
 
 const STATES = ['none', 'building', 'racing', 'ended', 'failed'] as const;
 
-/** Reads a parsed /rival.json: the laps of both cars, and the newest poses of B. */
+/** Race in a parsed /rival.json: the laps of both cars, and the newest poses of B. */
 export function readRace(json: unknown) {
   const all = fields(json);
   return {
@@ -33,11 +34,14 @@ export function readRace(json: unknown) {
   };
 }
 
-/** The poses of B along the road that have not been sampled yet, as laps; `line`: where laps begin [m]. */
+/**
+ * Adds the poses of B that are newer than `since` [s] to `samples`, in which laps begin at `line` [m] along the road.
+ * Returns the time of the newest pose [s].
+ */
 export function sampleRace(samples: LapSamples, { b, poses }: Race, line: number, since: number): number {
-  const ends: number[] = [0];
+  const ends: number[] = [0]; // times at which B's laps end, from the start on
   for (const { time } of b) ends.push((ends.at(-1) ?? 0) + time);
-  if (b.length > 0 && b[0]?.lap !== 1) return since; // the first laps are forgotten: when this one began is not known
+  if (b.length > 0 && b[0]?.lap !== 1) return since; // without the first laps, the start of these is not known
   let newest = since;
   poses.time_s.forEach((time, row) => {
     if (!(time > newest)) return;
@@ -59,7 +63,7 @@ export function sampleRace(samples: LapSamples, { b, poses }: Race, line: number
   return newest;
 }
 
-/** The newest lap that both have driven: how much slower B was [s], and what that means; no winner within 5 ms. */
+/** Winner of the newest lap that both cars have driven, and a sentence about it; no winner within SAME_S. */
 export function standingOf({ a, b }: Race): { readonly winner: 'A' | 'B' | null; readonly text: string } {
   const other = [...b].reverse().find(({ lap }) => a.some((own) => own.lap === lap));
   const own = a.find(({ lap }) => lap === other?.lap);

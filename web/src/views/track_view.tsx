@@ -1,3 +1,5 @@
+// The picture of the car on its road: from above on a canvas, or in 3D by scene3d, with the camera's name, the key of
+// its lines and the small map over it.
 import { useEffect, useRef } from 'preact/hooks';
 import { CachedPicture, isSame } from '../draw/cached_picture';
 import { allRound, behind, type Camera, fitting, project, unproject, zoomed } from '../draw/camera';
@@ -39,11 +41,22 @@ import { seekTo } from '../state/seek';
 import { shown } from '../state/shown';
 import { everyFrame } from '../state/ticker';
 
+/** Least time between two paints of the small map; chosen. */
 const SMALL_MAP_INTERVAL_MS = 80;
-/** Free at the edges of the whole track, for the camera's name and the numbers of the corners [px]. */
+/** Space round the whole track for the camera's name and the numbers of corners [px]. */
 const ROUND_TRACK = { top: 64, right: 56, bottom: 40, left: 56 };
+/** View without road and car [m]. */
+const EMPTY_VIEW: Box = { minX: 0, minY: 0, maxX: 100, maxY: 60 };
+/** Longest extrapolation of the car's pose, if frames stop to arrive [s]; chosen. */
+const LONGEST_EXTRAPOLATION_S = 0.1;
+/** Time in which the view turns to the car's heading: it does not follow every movement of the wheel; chosen. */
+const TURNING_TIME_MS = 250;
+/** Logarithm of the zoom for each step of the mouse wheel [1/px]: 100 px are 16 %; chosen. */
+const ZOOM_PER_PIXEL = 0.0015;
 
-const metresAcross = store.signal('page', 100); // for a full-size car
+/** Width of the road that the camera behind the car shows [m], for a full-size car. */
+const metresAcross = store.signal('page', 100);
+/** Name of the ghost car in the key; null: none is shown. */
 const ghostLabel = store.signal<string | null>('page', null);
 
 export function zoom(factor: number): void {
@@ -51,7 +64,7 @@ export function zoom(factor: number): void {
   else metresAcross.value = zoomed(metresAcross.value, factor);
 }
 
-/** The road's lines as they are drawn, renewed when the road is another. */
+/** Lines of the road in the form that is drawn; renew() updates them if the road has changed. */
 class Road {
   shape: RoadShape | null = null;
   box: Box | null = null;
@@ -65,36 +78,72 @@ class Road {
   }
 }
 
-/** The car's pose extrapolated to now: frames arrive less often than repaints. */
+/** Car with its pose extrapolated to `now` [ms], because frames arrive less often than repaints. */
 function carNow(now: number): Scene['car'] {
   const { frame } = live;
   const size = run.value;
   if (!frame || !size) return null;
   const isMoving = link.value === 'live' && !isPaused.value;
-  const age = isMoving ? Math.min(Math.max(0, now - live.receivedAt) / 1000, 0.1) : 0;
+  const age = isMoving ? Math.min(Math.max(0, now - live.receivedAt) / 1000, LONGEST_EXTRAPOLATION_S) : 0;
   const motion = { vx: frame.vx_mps, vy: frame.vy_mps, yawRate: frame.yaw_rate_radps };
   const pose = extrapolate({ x: frame.x_m, y: frame.y_m, yaw: frame.yaw_rad }, motion, age);
   return { ...pose, isBraking: frame.throttle_applied < 0, shape: carShape(size, frame.steer_applied_rad) };
 }
 
-/** The plan from where the car is now. */
+/** The part of the plan that lies ahead of the car. */
 const planAhead = (car: Scene['car']): RoadLine =>
   live.plan && car ? aheadOf({ x: live.plan.x_m, y: live.plan.y_m }, car) : { x: [], y: [] };
 
 const pointsOf = ({ x, y }: RoadLine): Point[] => Array.from(x, (each, i) => ({ x: each, y: y[i] ?? NaN }));
+
+/** Part of the scene that rarely changes. */
+function worldOf(shape: RoadShape | null) {
+  const isWhole = camera.value !== 'ahead';
+  return {
+    road: shape,
+    racingLine: layers.racingLine.value ? limit.value : null,
+    corners: markedCorners(),
+    kerb: run.value?.kerb_width_m ?? 0,
+    isWhole,
+    start: startLine(),
+    losses: isWhole ? lossesToLimit.value : null,
+    size: run.value ? paintSize(run.value) : 1,
+  };
+}
+
+/** The whole scene of this moment. */
+function sceneOf(world: ReturnType<typeof worldOf>, car: Scene['car'], plan: RoadLine, ghost: Pose | null): Scene {
+  return {
+    ...world,
+    reference: road.reference,
+    // The driven path is left out where it would cover the coloured lap.
+    trace: world.losses ? { x: [], y: [] } : { x: live.trace.column(0), y: live.trace.column(1) },
+    plan,
+    hindsight: layers.hindsight.value ? hindsight(live.pastPlans, live.plots, live.frame?.time_s ?? NaN) : null,
+    faults: faultMarks.value,
+    ghost,
+    car,
+  };
+}
+
+/** Camera and moving objects of a picture, from which the mouse and tests ask where things are. */
+interface Painted {
+  readonly seen: Camera;
+  readonly picture: { readonly camera: string; readonly aspect: number };
+  readonly car: Scene['car'];
+  readonly plan: readonly Point[];
+}
 
 /** Paints the track from above; keeps state from one picture to the next. */
 class Painter {
   readonly #paper: Paper;
   readonly #road = new Road();
   #heading = NaN; // smoothed yaw of the car [rad]
-  #lastPaint = 0;
-  #shown: readonly unknown[] = [];
-  #seen: Camera | null = null; // of the last picture
-  #picture = { camera: camera.value, aspect: NaN }; // the last one
-  #drawn: { readonly car: Scene['car']; readonly plan: readonly Point[] } = { car: null, plan: [] };
-  #worldKey: readonly unknown[] = [];
-  readonly #world = new CachedPicture();
+  #lastPaint = 0; // [ms]
+  #last: Painted | null = null;
+  #lastKey: readonly unknown[] = []; // all values that the last picture shows
+  #worldKey: readonly unknown[] = []; // the part of them that drawWorld() shows
+  readonly #world = new CachedPicture(); // what worldOf() describes
   readonly #ghost: Pose = { x: 0, y: 0, yaw: 0, steer: 0 };
 
   constructor(canvas: HTMLCanvasElement) {
@@ -109,51 +158,28 @@ class Painter {
     const { context, ratio } = paper;
     this.#road.renew();
     const car = carNow(now);
-    const plan = planAhead(car);
-    const seen = this.#camera(car, pointsOf(plan), now, box.width, box.height);
+    const planned = planAhead(car);
+    const plan = pointsOf(planned);
+    const seen = this.#camera(car, plan, now, box.width, box.height);
     this.#lastPaint = now;
-    const isWhole = camera.value !== 'ahead';
-    const losses = isWhole ? lossesToLimit.value : null;
-    const world = {
-      road: this.#road.shape,
-      racingLine: layers.racingLine.value ? limit.value : null,
-      corners: markedCorners(),
-      kerb: run.value?.kerb_width_m ?? 0,
-      isWhole,
-      start: startLine(),
-      losses,
-      size: run.value ? paintSize(run.value) : 1,
-    };
-    const scene: Scene = {
-      ...world,
-      reference: road.reference,
-      // The way driven would lie on the line of the lap that is coloured.
-      trace: losses ? { x: [], y: [] } : { x: live.trace.column(0), y: live.trace.column(1) },
-      plan,
-      hindsight: layers.hindsight.value ? hindsight(live.pastPlans, live.plots, live.frame?.time_s ?? NaN) : null,
-      faults: faultMarks.value,
-      ghost: session.ghost?.poseAt(live.frame?.lap_time_s ?? NaN, this.#ghost) ? this.#ghost : null,
-      car,
-    };
+    const ghost = session.ghost?.poseAt(live.frame?.lap_time_s ?? NaN, this.#ghost) ? this.#ghost : null;
+    const world = worldOf(this.#road.shape);
+    const scene = sceneOf(world, car, planned, ghost);
+    const mark = cursorMark();
     const { centre, scale, rotation } = seen;
     const still = [centre.x, centre.y, scale, rotation, canvas.width, canvas.height, theme(), ...Object.values(world)];
-    const mark = cursorMark();
-    const { ghost } = scene;
-    // In a paused run the picture does not change.
     const moving = [live.frame, live.plan, road.reference, live.trace.newest(0), scene.hindsight?.plan, scene.faults];
-    const places = [car?.x, car?.y, car?.yaw, ghost?.x, ghost?.y, mark?.x, mark?.y];
-    const shownNow = [...still, ...moving, ...places];
-    if (isSame(shownNow, this.#shown)) return;
-    this.#shown = shownNow;
-    this.#drawn = { car, plan: pointsOf(plan) };
-    this.#seen = seen;
-    this.#picture = { camera: camera.value, aspect: box.width / box.height };
+    const places = [car, ghost, mark].flatMap((each) => [each?.x, each?.y]).concat(car?.yaw);
+    const key = [...still, ...moving, ...places];
+    if (isSame(key, this.#lastKey)) return; // as in a paused run
+    this.#lastKey = key;
+    this.#last = { seen, picture: { camera: camera.value, aspect: box.width / box.height }, car, plan };
     this.#drawWorld(context, scene, seen, still, ratio);
     drawMoving(context, scene, seen, ratio);
     if (mark) drawCursor(context, mark, seen, ratio);
   }
 
-  /** Draws the static part; copies it while the camera does not move. */
+  /** Draws the static part, or copies it from #world while `key`, which has the camera, stays the same. */
   #drawWorld(
     context: CanvasRenderingContext2D,
     scene: Scene,
@@ -169,26 +195,23 @@ class Painter {
     }
     const { width, height } = this.#paper.canvas;
     context.setTransform(1, 0, 0, 1, 0, 0);
-    context.drawImage(
-      this.#world.picture(key, width, height, (own) => drawWorld(own, scene, seen, ratio)),
-      0,
-      0,
-    );
+    const picture = this.#world.picture(key, width, height, (own) => drawWorld(own, scene, seen, ratio));
+    context.drawImage(picture, 0, 0);
   }
 
   end(): void {
     this.#paper.box.end();
   }
 
-  /** The point of the world at a place of the canvas. */
+  /** Point of the world at a place of the canvas [CSS pixels]; null before the first picture. */
   worldAt(at: Point): Point | null {
-    return this.#seen && unproject(this.#seen, at);
+    return this.#last && unproject(this.#last.seen, at);
   }
 
-  /** Where the car's box and the plan are in the last picture [CSS pixels]; null without a car. */
+  /** Corners of the car and points of the plan in the last picture [CSS pixels]; null without a car. */
   geometry() {
-    const [seen, picture, { car, plan }] = [this.#seen, this.#picture, this.#drawn];
-    if (!seen || !car) return null;
+    if (!this.#last?.car) return null;
+    const { seen, picture, car, plan } = this.#last;
     const at = (point: Point): number[] => {
       const { x, y } = project(seen, point);
       return [x, y];
@@ -201,31 +224,22 @@ class Painter {
     return { picture, corners, plan: plan.map(at) };
   }
 
+  /** The camera behind the car, turned with it smoothly; or one that shows the whole track. */
   #camera(car: Scene['car'], plan: readonly Point[], now: number, width: number, height: number): Camera {
     if (camera.value !== 'ahead' || !car) {
-      const all =
-        this.#road.box ??
-        boundsOf(
-          car
-            ? [car, ...road.reference]
-            : [
-                { x: 0, y: 0 },
-                { x: 100, y: 60 },
-              ],
-        );
-      return fitting(all as Box, width, height, ROUND_TRACK);
+      const all = this.#road.box ?? boundsOf(car ? [car, ...road.reference] : []) ?? EMPTY_VIEW;
+      return fitting(all, width, height, ROUND_TRACK);
     }
     const across = metresAcross.value * (run.value ? paintSize(run.value) : 1);
-    // Smoothed over a quarter of a second, so that the view does not follow every steering movement.
-    const elapsed = (now - this.#lastPaint) * Math.max(1, live.frame?.pace || 1); // a fast run turns as fast
-    const share = Number.isNaN(this.#heading) ? 1 : 1 - Math.exp(-elapsed / 250);
+    const elapsed = (now - this.#lastPaint) * Math.max(1, live.frame?.pace || 1); // [ms] of the run, if it is faster
+    const share = Number.isNaN(this.#heading) ? 1 : 1 - Math.exp(-elapsed / TURNING_TIME_MS);
     const from = Number.isNaN(this.#heading) ? car.yaw : this.#heading;
     this.#heading = from + wrapAngle(car.yaw - from) * share;
     return behind(car, this.#heading, width, height, across, plan, ROUND_TRACK.top);
   }
 }
 
-/** The small map in the sky: the track in the colours of the time lost to the limit, and the car. */
+/** Small map over the sky of the 3D picture: the track, coloured by the time lost to the limit, and the car. */
 function SmallMap() {
   const element = useRef<HTMLCanvasElement>(null);
   useEffect(() => {
@@ -262,6 +276,7 @@ function SmallMap() {
   return <canvas ref={element} class="small-map" role="img" aria-label="Map: where time is lost to the limit" />;
 }
 
+/** Description of the picture for people who do not see it. */
 function describePicture(): string {
   const frame = shown.value;
   const what = shows3d.value ? 'Picture' : 'Map';
@@ -270,16 +285,16 @@ function describePicture(): string {
   return `${what} of the track: the car is ${place} at ${fixed(inSpeedUnit(frame.speed_mps), 0)} ${speedUnit().spoken}`;
 }
 
-/** What a line on the road is. */
+/** Entry of the key: a line's name in its colour. */
 const Line = ({ name, token, kind = '' }: { name: string; token: string; kind?: string }) => (
   <span class={`key line-key ${kind}`} style={{ '--tone': `var(--${token})` }}>
     {name}
   </span>
 );
 
-/** The camera's name, and what the lines on the road are. */
+/** Selection of the camera, and the key of the lines on the road. */
 function Corner() {
-  void shown.value; // a plan comes with the frames
+  void shown.value; // renders again with each frame: live.plan is no signal
   const ghost = ghostLabel.value;
   return (
     <div class="corner row">
@@ -301,6 +316,7 @@ function Corner() {
   );
 }
 
+/** A canvas that is painted with every frame of the browser; wheel and click zoom and point at the road. */
 function usePainter() {
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => {
@@ -310,7 +326,7 @@ function usePainter() {
     const onWheel = (event: WheelEvent): void => {
       if (event.ctrlKey) return;
       event.preventDefault();
-      zoom(Math.exp(event.deltaY * 0.0015));
+      zoom(Math.exp(event.deltaY * ZOOM_PER_PIXEL));
     };
     const onClick = (event: MouseEvent): void => {
       const point = painter.worldAt({ x: event.offsetX, y: event.offsetY });
@@ -320,12 +336,13 @@ function usePainter() {
       if (!seek) pointAt(point.x, point.y);
       else if (time !== null) seek(time);
     };
+    // Tests ask by an event where car and plan are, to see whether anything covers them.
     const answer = (event: Event): void => void Object.assign(event, { geometry: painter.geometry() });
     const over = new AbortController();
     const { signal } = over;
     element.addEventListener('click', onClick, { signal });
     element.addEventListener('wheel', onWheel, { passive: false, signal });
-    element.addEventListener('geometry', answer, { signal }); // asked by tests: is anything over the car or its plan?
+    element.addEventListener('geometry', answer, { signal });
     const stop = everyFrame((now) => {
       painter.paint(now);
       const label = session.ghost?.label ?? null;
@@ -342,7 +359,7 @@ function usePainter() {
   return canvas;
 }
 
-/** The car on the road, edge to edge; nothing lies over it but the camera's name and, in the sky, the small map. */
+/** The car on the road, over the whole view. */
 export function TrackView() {
   const canvas = usePainter();
   const label = describePicture();

@@ -11,16 +11,18 @@ namespace chicane::identify {
 namespace {
 
 constexpr int kStartSize = 6;           // numbers of a Start
-constexpr double kHuber = 2.5;          ///< deviations from which on a residual counts linearly
-constexpr double kSideslipSpeed = 1.0;  ///< standard deviation of v_y at a start [m/s]
+constexpr double kHuber = 2.5;          // deviations from which on a residual counts linearly
+constexpr double kSideslipSpeed = 1.0;  // [m/s] standard deviation of v_y at a start
 constexpr Start kStartStep{1e-4, 1e-4, 1e-5, 1e-4, 1e-4, 1e-5};  // steps of derivatives, units of Start
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Residuals of a window over their deviations: samples, then the prior of the start.
-void residuals(const DriveLog& log, const Window& window, const std::vector<Expected>& expected,
+/// Residuals of a window that begins at `start`, over their deviations: samples, then the prior of the start.
+void residuals(const Car& car, const DriveLog& log, const Actuators& actuators, const Window& window,
                const Start& start, const Noise& noise, VectorXd& r) {
+  std::vector<Expected> expected;
+  drive(car, log, actuators, window.first, window.last, start, expected);
   const auto count = static_cast<Eigen::Index>(window.last - window.first);
   r.resize(5 * count + 1);
   for (Eigen::Index n = 0; n < count; ++n) {
@@ -83,37 +85,26 @@ Start moved(Start start, const VectorXd& by) {
 MatrixXd derivatives_by_start(const Car& car, const DriveLog& log, const Actuators& actuators,
                               const Window& window, const Noise& noise, const VectorXd& r) {
   MatrixXd j(r.size(), kStartSize);
-  std::vector<Expected> expected;
   VectorXd other;
   for (std::size_t i = 0; i < kStartSize; ++i) {
     Start start = window.start;
     start[i] += kStartStep[i];
-    drive(car, log, actuators, window.first, window.last, start, expected);
-    residuals(log, window, expected, start, noise, other);
+    residuals(car, log, actuators, window, start, noise, other);
     j.col(static_cast<Eigen::Index>(i)) = (other - r) / kStartStep[i];
   }
   return j;
 }
 
-std::vector<Actuators> actuators_of(const std::vector<DriveLog>& logs, const Car& car) {
-  std::vector<Actuators> all;
-  all.reserve(logs.size());
-  for (const DriveLog& log : logs) all.emplace_back(log, car);
-  return all;
-}
-
 /// The loss of a window that begins at `start`; infinite where the car is lost.
 double loss_from(const DriveLog& log, const Window& window, const Car& car, const Actuators& actuators,
                  const Noise& noise, const Start& start) {
-  std::vector<Expected> expected;
   VectorXd r;
-  drive(car, log, actuators, window.first, window.last, start, expected);
-  residuals(log, window, expected, start, noise, r);
+  residuals(car, log, actuators, window, start, noise, r);
   const double sum = loss(r);
   return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
 }
 
-/// Moves the start by the share of `step` that explains the window best; its loss there.
+/// Moves the start by the share of `step` that explains the window best. Returns the loss there.
 double move_start(const DriveLog& log, Window& window, const Car& car, const Actuators& actuators,
                   const Noise& noise, const VectorXd& step) {
   double best = std::numeric_limits<double>::infinity();
@@ -132,15 +123,13 @@ double move_start(const DriveLog& log, Window& window, const Car& car, const Act
   return best;
 }
 
-/// Gauss and Newton's steps of the start alone.
+/// Improves the start alone by `steps` of Gauss and Newton. Returns the loss.
 double improve_start(const DriveLog& log, Window& window, const Car& car, const Actuators& actuators,
                      const Noise& noise, int steps) {
-  std::vector<Expected> expected;
   VectorXd r;
   double now = std::numeric_limits<double>::infinity();
   for (int i = 0; i < steps; ++i) {
-    drive(car, log, actuators, window.first, window.last, window.start, expected);
-    residuals(log, window, expected, window.start, noise, r);
+    residuals(car, log, actuators, window, window.start, noise, r);
     const VectorXd root = roots_of_weights(r);
     const MatrixXd j = root.asDiagonal() * derivatives_by_start(car, log, actuators, window, noise, r);
     now =
@@ -195,13 +184,11 @@ Linearised linearise(const std::vector<DriveLog>& logs, const std::vector<Window
   const VectorXd steps = 1e-4 * prior.deviation;
   const Side here = side(-1, 0.0);
   for (Eigen::Index i = 0; i < p; ++i) sides.push_back(side(i, steps[i]));
-  std::vector<Expected> expected;
   VectorXd r, beside;
   for (const Window& window : windows) {
     const DriveLog& log = logs[window.log];
     const auto at = [&](const Side& s, VectorXd& to) {
-      drive(s.car, log, s.actuators[window.log], window.first, window.last, window.start, expected);
-      residuals(log, window, expected, window.start, noise, to);
+      residuals(s.car, log, s.actuators[window.log], window, window.start, noise, to);
     };
     at(here, r);
     MatrixXd by_theta(r.size(), p);
@@ -279,6 +266,13 @@ class Correlation {
 
 }  // namespace
 
+std::vector<Actuators> actuators_of(const std::vector<DriveLog>& logs, const Car& car) {
+  std::vector<Actuators> all;
+  all.reserve(logs.size());
+  for (const DriveLog& log : logs) all.emplace_back(log, car);
+  return all;
+}
+
 WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& windows,
                       const Prior& of_numbers, const std::vector<double>& from, const Noise& noise,
                       double accuracy, const std::function<bool()>& go_on) {
@@ -336,12 +330,10 @@ WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& wi
   const Car car = prior.car(theta);
   const std::vector<Actuators> actuators = actuators_of(logs, car);
   std::array<std::vector<double>, 5> sizes;
-  std::vector<Expected> expected;
   VectorXd r;
   Correlation correlated;
   for (const Window& window : windows) {
-    drive(car, logs[window.log], actuators[window.log], window.first, window.last, window.start, expected);
-    residuals(logs[window.log], window, expected, window.start, noise, r);
+    residuals(car, logs[window.log], actuators[window.log], window, window.start, noise, r);
     correlated.add(logs[window.log], window, r);
     for (Eigen::Index i = 0; i + 1 < r.size(); ++i)
       sizes[static_cast<std::size_t>(i % 5)].push_back(std::fabs(r[i]) *
@@ -353,7 +345,7 @@ WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& wi
     std::nth_element(sizes[kind].begin(), middle, sizes[kind].end());
     fit.residual[kind] = 1.4826 * *middle;  // standard deviation from the median, if normally distributed
   }
-  // The prior is as certain as it was; samples count as fewer independent ones.
+  // Correlated samples count as fewer independent ones; the prior keeps its certainty.
   fit.correlation = correlated.factor();
   const MatrixXd prior_alone = inverse * weight.asDiagonal() * inverse;
   const VectorXd plain = fit.correlation * (inverse - prior_alone).diagonal() + prior_alone.diagonal();

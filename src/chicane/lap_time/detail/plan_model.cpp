@@ -11,14 +11,15 @@
 namespace chicane::lap_time {
 namespace {
 
-constexpr double kSample = 1.0;      // spacing of the speeds that choose the nodes [m]
-constexpr double kLeastStep = 0.35;  // [m]
-constexpr double kMostStep = 4.0;
-constexpr double kWindow = 6.0;  // length over which the line's curvature is averaged [m]
-constexpr double kMostReach = 0.9;
+constexpr double kSample = 1.0;      // [m] between the speeds that choose the nodes; chosen
+constexpr double kLeastStep = 0.35;  // [m] least step between nodes; chosen
+constexpr double kMostStep = 4.0;    // [m] largest step between nodes; chosen
+constexpr double kWindow = 6.0;      // [m] length over which the line's curvature is averaged; chosen
+constexpr double kMostReach = 0.9;   // used width over the distance to the bend's centre; chosen
 
-/// Width [m] on the side to which the line bends with `bend` [1/m], if positive: at most kMostReach of the
-/// way to the bend's centre. What lies beyond belongs to other places along the line.
+/// Width of the road that a place of the line may use on one side [m]. `bend`: curvature of the line towards
+/// that side [1/m]. Limited to kMostReach of the way to the bend's centre, because points beyond the centre
+/// belong to other places along the line.
 double reach(double width, double bend) {
   constexpr double kStraight = 1e-6;  // [1/m]
   return std::min(width, kMostReach / std::max(bend, kStraight));
@@ -101,8 +102,8 @@ RoadNodes lay_nodes(const road::Track& track, const GuessCar& car, double time_s
 
 namespace {
 
-/// A line with as little curvature where it has most as the road allows: Σ (κ/κ_lock)⁸. Variables: offset,
-/// course against the road, curvature; change of curvature along the road.
+/// Problem of a line whose largest curvature is as small as the road allows: least Σ (κ/κ_lock)⁸. Variables:
+/// offset, course against the road, curvature; change of curvature along the road.
 struct BendModel {
   static constexpr int kVariables = 4, kStates = 3, kEquations = 0, kInequalities = 4;
   static constexpr std::array<double, kVariables> scale() { return {2.0, 0.2, 0.1, 0.1}; }
@@ -131,11 +132,11 @@ struct BendModel {
   }
 
  private:
-  static constexpr double kSmooth = 1e-3;
+  static constexpr double kSmooth = 1e-3;  // weight of the squared change of curvature; chosen
 };
 
-constexpr double kPace = 4.0;       // speed at the nodes [m/s]
-constexpr double kFollowed = 1e-3;  // violation of a line within the road: millimetres
+constexpr double kPace = 4.0;       // [m/s] speed that chooses the nodes; chosen
+constexpr double kFollowed = 1e-3;  // scaled violation of a line that stays on the road: millimetres
 constexpr int kNarrowings = 3;      // times that the room is halved
 
 /// Whether the car's lock suffices for the straightest line with its centre of mass at most `beside` from the

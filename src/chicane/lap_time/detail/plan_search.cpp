@@ -13,9 +13,10 @@
 namespace chicane::lap_time {
 namespace {
 
+// The numbers were chosen.
 constexpr double kCoarse = 2.5;  // coarse spacing over fine spacing of the nodes
 constexpr int kCoarseIterations = 260,
-              kFineIterations = 300;       // limits: typical searches need fewer
+              kFineIterations = 300;       // limits of a search, which usually takes fewer
 constexpr double kCoarseTolerance = 1e-3;  // tolerance of the starts for fine nodes
 constexpr double kWarmBarrier = 1e-4;      // first barrier near a known solution
 constexpr double kUsable = 1e-2;           // largest scaled violation of a plan that can be driven: some cm
@@ -127,7 +128,8 @@ bool PlanSearch::goes_on(double lap_time, std::size_t nodes) {
   return !is_stopped_ && !is_out_of_budget_;
 }
 
-/// On coarse nodes, the best of kEnough optima.
+/// Best of kEnough optima on coarse nodes, from starts that differ in the solver's first barrier and in the
+/// share of the car's accelerations that the first guess uses.
 Result<NodePlan> PlanSearch::find_coarse() {
   struct Start {
     double barrier, share;
@@ -158,7 +160,8 @@ Result<NodePlan> PlanSearch::find_coarse() {
   return fail(ErrorCode::kNotFound, is_out_of_budget_ ? kNoBudget : "limit: no optimum from any first guess");
 }
 
-/// A search without a cap on slip converges near its optimum only: from cap to cap, as long as there is one.
+/// Plans for the caps on slip in order, each from the one before, until a cap has none: without a cap the
+/// search converges only from near its optimum.
 std::vector<NodePlan> PlanSearch::release_slip(NodePlan first) {
   std::vector<NodePlan> plans{std::move(first)};
   for (std::size_t i = 1; i < options_.slip_caps.size() && !is_out_of_budget_; ++i) {
@@ -404,7 +407,7 @@ DrivenLaps drive_plan(const road::Track& track, LimitModel& model, const NodePla
   const PlanTable table(plan, feedback, variables, driven, track.length());
   const road::Path& line = track.centre();
 
-  // Start on the plan, at its straightest node.
+  // Begins on the plan, at its straightest node.
   const std::size_t first = straightest(plan, variables);
   const double* z0 = plan.z.data() + first * variables;
   const road::PathPoint foot = line.at(plan.road.s[first]);
@@ -421,7 +424,7 @@ DrivenLaps drive_plan(const road::Track& track, LimitModel& model, const NodePla
   std::vector<double> gains(2 * driven);
   std::vector<double> x(driven);
   const double dt = plant.step_length();
-  const double most_time = (laps + 2.0) * 1.5 * plan.lap_time;  // half as long again as planned
+  const double most_time = (laps + 2.0) * 1.5 * plan.lap_time;  // laps may take half as long again as planned
   for (double time = 0.0; time < most_time && judge.state().lap < laps;) {
     const sim::WorldState& seen = judge.state();
     table.at(seen.s, z.data(), gains.data());
@@ -436,7 +439,7 @@ DrivenLaps drive_plan(const road::Track& track, LimitModel& model, const NodePla
       const double error = i == kHeading ? wrap_angle(x[i] - z[i]) : x[i] - z[i];
       for (std::size_t j = 0; j < 2; ++j) inputs[j] -= gains[j * driven + i] * error;
     }
-    // One step of the plant, and its judgement.
+    // Advances the plant by one step, and judges it.
     const model::Command asked = model.command(plant.state(), ahead.data(), inputs);
     plant.advance(asked);
     model.see(asked, plant.output(), dt);

@@ -104,7 +104,7 @@ void begin_near(TrackFile& content, const Vec2& place) {
 
 void arrange(TrackFile& content, const TrackReadOptions& options) {
   using Direction = TrackReadOptions::Direction;
-  const bool is_left = survey::turned_area(places_of(content)) > 0.0;
+  const bool is_left = survey::signed_area(places_of(content)) > 0.0;
   const bool turns = options.direction == Direction::kReversed ||
                      (options.direction == Direction::kLeft && !is_left) ||
                      (options.direction == Direction::kRight && is_left);
