@@ -10,9 +10,9 @@
 # runs or of JSON, which are precompiled for them, too.
 #
 # Most of a small source file's compile time goes into the headers that it includes. UNITY compiles the module's sources as one file,
-# and chicane_unity(TARGET GROUP FILE...) some of a target's, so names in their anonymous namespaces must differ; files that no group
-# names, such as those of a new controller, are compiled alone. A test that names no groups is one file, too. LIGHT is for what no control
-# step waits for: -O1. Tests have -Og. docs/measured/program.md says what this is good for.
+# chicane_unity(TARGET GROUP FILE...) some of a target's, and a test BATCH of its sources at a time, without it all at once; so names in
+# their anonymous namespaces must differ. Files that no group of a module names, such as those of a new controller, are compiled alone.
+# LIGHT is for what no control step waits for: -O1. Tests have -Og. docs/measured/program.md says what this is good for.
 option(CHICANE_UNITY "Compile groups of sources as one file; OFF, as in the preset dev: each alone" ON)
 
 function(chicane_unity target group)
@@ -107,7 +107,7 @@ function(chicane_test_options target)
 endfunction()
 
 function(chicane_test name)
-  cmake_parse_arguments(T "OWN_OPTIONS;RUN_HEADERS" "" "SOURCES;FURTHER;WITHOUT;DEPENDS;LABELS;PRIVATE;SUITES" ${ARGN})
+  cmake_parse_arguments(T "OWN_OPTIONS;RUN_HEADERS" "BATCH" "SOURCES;FURTHER;WITHOUT;DEPENDS;LABELS;PRIVATE;SUITES" ${ARGN})
   if(NOT T_DEPENDS)
     set(T_DEPENDS ${name})
   endif()
@@ -118,7 +118,7 @@ function(chicane_test name)
   list(TRANSFORM T_DEPENDS PREPEND chicane_)
   set(target ${name}_test)
   add_executable(${target} ${T_SOURCES} ${T_FURTHER})
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${CHICANE_UNITY} UNITY_BUILD_BATCH_SIZE 0)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${CHICANE_UNITY} UNITY_BUILD_BATCH_SIZE "0${T_BATCH}")  # 0: all
   chicane_test_options(${target})
   target_link_libraries(${target} PRIVATE ${T_DEPENDS} ${T_PRIVATE})
   if(NOT CMAKE_CROSSCOMPILING)

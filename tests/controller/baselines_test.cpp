@@ -9,14 +9,14 @@
 namespace chicane::controller {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-const model::VehicleParams kCar;
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+const model::VehicleParams kAnyCar;
 
 std::vector<std::unique_ptr<test::Guarded>> all_baselines(safety::GuardMode mode = safety::GuardMode::kOff) {
   std::vector<std::unique_ptr<test::Guarded>> all;
-  all.push_back(std::make_unique<test::Guarded>(std::move(*make_pid({}, kCar)), kCar, mode));
-  all.push_back(std::make_unique<test::Guarded>(std::move(*make_pure_pursuit({}, kCar)), kCar, mode));
-  all.push_back(std::make_unique<test::Guarded>(std::move(*make_stanley({}, kCar)), kCar, mode));
+  all.push_back(std::make_unique<test::Guarded>(std::move(*make_pid({}, kAnyCar)), kAnyCar, mode));
+  all.push_back(std::make_unique<test::Guarded>(std::move(*make_pure_pursuit({}, kAnyCar)), kAnyCar, mode));
+  all.push_back(std::make_unique<test::Guarded>(std::move(*make_stanley({}, kAnyCar)), kAnyCar, mode));
   return all;
 }
 
@@ -69,7 +69,7 @@ TEST(Baselines, SpeedUpBelowTheReferenceAndBrakeUsefullyAboveIt) {
     const double braking =
         controller->step(on_a_straight(0.0, 0.0, 40.0), Deadline::never()).command.throttle;
     EXPECT_LT(braking, 0.0);
-    EXPECT_GE(braking, -kCar.brake_throttle_limit);
+    EXPECT_GE(braking, -kAnyCar.brake_throttle_limit);
   }
 }
 
@@ -77,7 +77,7 @@ TEST(Baselines, SlowDownForACurve) {
   PidOptions options;
   options.speed.speed_reference = 30.0;
   options.speed.lateral_acceleration_limit = 2.0;
-  const auto controller = std::move(*make_pid(options, kCar));
+  const auto controller = std::move(*make_pid(options, kAnyCar));
   const StepResult& result = controller->step(on_a_left_bend(), Deadline::never());
   // sqrt(2 m/s² · 80 m) = 12.6 m/s; the ends of the spline are straighter, so a little is allowed on top.
   EXPECT_NEAR(result.report.speed_reference, std::sqrt(2.0 * 80.0), 1.5);
@@ -86,17 +86,17 @@ TEST(Baselines, SlowDownForACurve) {
 TEST(Baselines, StandStillWithoutTurningTheWheelToItsStop) {
   for (const auto& controller : all_baselines()) {
     const test::Sent& result = controller->step(on_a_straight(0.5, 0.0, 0.0), Deadline::never());
-    EXPECT_LT(std::fabs(result.command.steer), kCar.steer_limit) << controller->name();
+    EXPECT_LT(std::fabs(result.command.steer), kAnyCar.steer_limit) << controller->name();
   }
 }
 
 TEST(Baselines, KeepThePidIntegralBoundedWhileTheWheelIsAtItsStop) {
   PidOptions options;
   options.integral_gain = 0.5;
-  const auto controller = std::move(*make_pid(options, kCar));
+  const auto controller = std::move(*make_pid(options, kAnyCar));
   model::Measurement now = on_a_straight(6.0, 0.0, 5.0);
   for (int i = 0; i < 600; ++i, now.time += 0.05) (void)controller->step(now, Deadline::never());
-  EXPECT_EQ(controller->step(now, Deadline::never()).command.steer, -kCar.steer_limit);
+  EXPECT_EQ(controller->step(now, Deadline::never()).command.steer, -kAnyCar.steer_limit);
   // Back on the line the wheel comes off the stop at once: 30 s of error have not been piled up.
   now.y = -1.0;
   int steps = 0;
@@ -110,17 +110,17 @@ TEST(Baselines, KeepThePidIntegralBoundedWhileTheWheelIsAtItsStop) {
 TEST(Baselines, AnswerAlsoWithoutAUsableMeasurement) {
   for (const auto& controller : all_baselines()) {
     std::vector<model::Measurement> hostile(7, on_a_left_bend());
-    hostile[0].x = kNaN;
+    hostile[0].x = kNotANumber;
     hostile[1].psi = std::numeric_limits<double>::infinity();
-    hostile[2].speed = kNaN;
-    hostile[3].time = kNaN;
+    hostile[2].speed = kNotANumber;
+    hostile[3].time = kNotANumber;
     hostile[4].waypoint_count = 0;
     hostile[5].waypoint_count = 1;
     for (Vec2& point : hostile[6].waypoints) point = {1.0, 1.0};
     for (const auto& now : hostile) {
       const test::Sent& result = controller->step(now, Deadline::never());
       ASSERT_TRUE(std::isfinite(result.command.steer) && std::isfinite(result.command.throttle));
-      ASSERT_LE(std::fabs(result.command.steer), kCar.steer_limit);
+      ASSERT_LE(std::fabs(result.command.steer), kAnyCar.steer_limit);
       ASSERT_LE(std::fabs(result.command.throttle), 1.0);
       EXPECT_NE(result.guard.rung, Rung::kController);
     }
@@ -130,15 +130,15 @@ TEST(Baselines, AnswerAlsoWithoutAUsableMeasurement) {
 TEST(Baselines, RefuseOptionsOutOfRangeByName) {
   PidOptions pid;
   pid.integral_gain = -1.0;
-  EXPECT_EQ(make_pid(pid, kCar).error().message,
+  EXPECT_EQ(make_pid(pid, kAnyCar).error().message,
             "pid.integral_gain: got -1, expected a number in [0, 10] rad/(m s)");
   PurePursuitOptions pursuit;
   pursuit.lookahead_min = 0.0;
-  EXPECT_NE(make_pure_pursuit(pursuit, kCar).error().message.find("pure_pursuit.lookahead_min"),
+  EXPECT_NE(make_pure_pursuit(pursuit, kAnyCar).error().message.find("pure_pursuit.lookahead_min"),
             std::string::npos);
   StanleyOptions stanley;
-  stanley.speed.speed_gain = kNaN;
-  EXPECT_NE(make_stanley(stanley, kCar).error().message.find("speed_gain"), std::string::npos);
+  stanley.speed.speed_gain = kNotANumber;
+  EXPECT_NE(make_stanley(stanley, kAnyCar).error().message.find("speed_gain"), std::string::npos);
 }
 
 TEST(Baselines, AreNotToldOfAPlaceThatJumps) {

@@ -8,7 +8,7 @@ namespace {
 TEST(TemporaryFile, NamesAPlaceWhereNothingIsAndClearsUp) {
   std::string path;
   {
-    const TemporaryFile file{".mcap"};
+    const recording::TemporaryFile file{".mcap"};
     path = file.path();
     EXPECT_TRUE(path.ends_with(".mcap"));
     EXPECT_FALSE(std::filesystem::exists(path));
@@ -19,8 +19,8 @@ TEST(TemporaryFile, NamesAPlaceWhereNothingIsAndClearsUp) {
 }
 
 TEST(TemporaryFile, IsAnotherOneEachTime) {
-  const TemporaryFile one{".txt"};
-  const TemporaryFile other{".txt"};
+  const recording::TemporaryFile one{".txt"};
+  const recording::TemporaryFile other{".txt"};
   EXPECT_NE(one.path(), other.path());
 }
 

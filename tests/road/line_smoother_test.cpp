@@ -5,25 +5,25 @@
 namespace chicane::road {
 namespace {
 
-constexpr int kKnots = 80;
+constexpr int kKnotCount = 80;
 constexpr double kSpacing = 3.0;
 
 /// Offsets for a line of the given curvatures.
 std::vector<double> smooth(const std::vector<double>& curvature, double width, int share = 1'000'000) {
-  LineSmoother smoother(kKnots);
+  LineSmoother smoother(kKnotCount);
   smoother.configure(width, 4.0);
-  smoother.begin(kKnots, kSpacing, 0);
+  smoother.begin(kKnotCount, kSpacing, 0);
   std::copy(curvature.begin(), curvature.end(), smoother.curvature().begin());
   for (int work = share; !smoother.advance(work); work = share) {
   }
   std::vector<double> offsets;
-  for (int k = 0; k < kKnots; ++k) offsets.push_back(smoother.offset(k));
+  for (int k = 0; k < kKnotCount; ++k) offsets.push_back(smoother.offset(k));
   return offsets;
 }
 
 /// One bend to the left by 1.2 rad in the middle of a straight.
 std::vector<double> bend() {
-  std::vector<double> curvature(kKnots, 0.0);
+  std::vector<double> curvature(kKnotCount, 0.0);
   for (std::size_t k = 30; k < 50; ++k) curvature[k] = 0.02;
   return curvature;
 }
@@ -39,7 +39,7 @@ double bending(const std::vector<double>& curvature, const std::vector<double>& 
 }
 
 TEST(LineSmoother, LeavesAStraightLineAndALineWithoutRoomWhereTheyAre) {
-  for (const double n : smooth(std::vector<double>(kKnots, 0.0), 2.0)) EXPECT_EQ(n, 0.0);
+  for (const double n : smooth(std::vector<double>(kKnotCount, 0.0), 2.0)) EXPECT_EQ(n, 0.0);
   for (const double n : smooth(bend(), 0.0)) EXPECT_EQ(n, 0.0);
 }
 
@@ -47,7 +47,7 @@ TEST(LineSmoother, CutsABendOnItsInsideAndBendsLess) {
   const std::vector<double> n = smooth(bend(), 1.5);
   EXPECT_GT(*std::max_element(n.begin() + 35, n.begin() + 45), 0.5) << "left is the inside";
   EXPECT_LT(std::min(n[25], n[54]), -0.3) << "and comes from the outside";
-  EXPECT_LT(bending(bend(), n), 0.8 * bending(bend(), std::vector<double>(kKnots, 0.0)));
+  EXPECT_LT(bending(bend(), n), 0.8 * bending(bend(), std::vector<double>(kKnotCount, 0.0)));
 }
 
 TEST(LineSmoother, KeepsWithinAboutItsWidth) {

@@ -8,7 +8,7 @@
 namespace chicane::road {
 namespace {
 
-constexpr double kRadius = 80.0;
+constexpr double kBendRadius = 80.0;
 
 /// A circle to the left (side 1) or right (-1), with 3 m of road inside and 5 m outside of it, faster in one
 /// half.
@@ -18,9 +18,9 @@ std::vector<road::LinePoint> lap(double side) {
   for (int i = 0; i <= kCount; ++i) {
     const double angle = kTwoPi * i / kCount;
     road::LinePoint point;
-    point.position = {kRadius * std::sin(angle), side * kRadius * (1.0 - std::cos(angle))};
+    point.position = {kBendRadius * std::sin(angle), side * kBendRadius * (1.0 - std::cos(angle))};
     point.heading = side * angle;
-    point.curvature = side / kRadius;
+    point.curvature = side / kBendRadius;
     point.speed = 20.0 + 5.0 * std::sin(angle);
     point.left = side > 0.0 ? 3.0 : 5.0;
     point.right = side > 0.0 ? 5.0 : 3.0;
@@ -33,14 +33,14 @@ TEST(RacingRoad, HasTheLapsLineItsSpeedsAndItsRoom) {
   for (const double side : {1.0, -1.0}) {
     const RacingRoad road(lap(side), 0.5);
     ASSERT_TRUE(road.line().is_closed());
-    EXPECT_NEAR(road.line().length(), kTwoPi * kRadius, 1e-3);
+    EXPECT_NEAR(road.line().length(), kTwoPi * kBendRadius, 1e-3);
     EXPECT_LE(road.line().spacing(), RacingRoad::kSpacing);
     for (double s = -600.0; s < 1200.0; s += 31.7) {
-      const double angle = s / kRadius;
+      const double angle = s / kBendRadius;
       const CurvePoint at = road.line().at(s);
-      EXPECT_NEAR(at.position.x(), kRadius * std::sin(angle), 1e-3);
-      EXPECT_NEAR(at.position.y(), side * kRadius * (1.0 - std::cos(angle)), 1e-3);
-      EXPECT_NEAR(at.curvature, side / kRadius, 1e-9);
+      EXPECT_NEAR(at.position.x(), kBendRadius * std::sin(angle), 1e-3);
+      EXPECT_NEAR(at.position.y(), side * kBendRadius * (1.0 - std::cos(angle)), 1e-3);
+      EXPECT_NEAR(at.curvature, side / kBendRadius, 1e-9);
       EXPECT_NEAR(road.line().demand(s).speed, 20.0 + 5.0 * std::sin(angle), 0.01);
       const Road::Room room = road.room(s);
       EXPECT_NEAR(side > 0.0 ? room.left : room.right, 3.5, 1e-9) << "the kerb is road";
@@ -56,7 +56,7 @@ TEST(RacingRoad, StopsBeforeTheEndOfAnOpenRoad) {
   EXPECT_NEAR(road.line().demand(length - 12.0).speed, 0.0, 2.0);
   EXPECT_EQ(road.line().demand(length + 50.0).speed, 0.0);
   for (double s = 0.0; s < length - 14.0; s += 7.3) {
-    const double planned = 20.0 + 5.0 * std::sin(s / kRadius);
+    const double planned = 20.0 + 5.0 * std::sin(s / kBendRadius);
     const double stops = std::sqrt(2.0 * 4.0 * (length - 12.0 - s));
     EXPECT_NEAR(road.line().demand(s).speed, std::min(planned, stops), 0.15) << s;
     EXPECT_GT(road.room(s).left, 2.9);
@@ -113,7 +113,7 @@ TEST(RacingRoad, IsWhatAStopOnItFollows) {
   EXPECT_EQ(told.target({.left = 5.0, .right = 3.0}, 1.5), 1.0) << "the middle of the road";
   told.use_line(&road);
   EXPECT_NE(told.revision(), before);
-  EXPECT_NEAR(told.line().length(), kTwoPi * kRadius, 1e-3);
+  EXPECT_NEAR(told.line().length(), kTwoPi * kBendRadius, 1e-3);
   EXPECT_NEAR(told.edges(10.0).left, 3.0, 1e-9);
   EXPECT_EQ(told.target({.left = 5.0, .right = 3.0}, 1.5), 0.0) << "the line itself";
   EXPECT_EQ(told.target({.left = 7.0, .right = 1.0}, 1.5), 0.5) << "but away from the edge";

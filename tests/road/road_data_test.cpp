@@ -8,10 +8,10 @@
 namespace chicane::road {
 namespace {
 
-constexpr double kRadius = 100.0;
+constexpr double kCornerRadius = 100.0;
 
 /// Counter-clockwise, 5 m to the left, 3 m to the right.
-Track circle() { return test::circle_road(kRadius, 200, 5.0, 3.0); }
+Track circle() { return test::circle_road(kCornerRadius, 200, 5.0, 3.0); }
 
 /// 100 m along x, its right edge moving from 2 m to 4 m.
 Track straight() {
@@ -31,7 +31,7 @@ TEST(RoadData, SpacesItsPointsEvenlyAndByNoMoreThanAsked) {
 TEST(RoadData, ClosesWithTheFirstPointOneTurnLater) {
   const RoadData road = road_data(circle(), 5.0);
   EXPECT_TRUE(road.is_closed);
-  EXPECT_NEAR(road.length, kTwoPi * kRadius, 0.01);
+  EXPECT_NEAR(road.length, kTwoPi * kCornerRadius, 0.01);
   const RoadPoint& first = road.points.front();
   const RoadPoint& last = road.points.back();
   EXPECT_EQ(first.s, 0.0);
@@ -43,8 +43,8 @@ TEST(RoadData, ClosesWithTheFirstPointOneTurnLater) {
 
 TEST(RoadData, HasTheTracksHeadingCurvatureAndWidthsOnEachSide) {
   for (const RoadPoint& point : road_data(circle(), 5.0).points) {
-    EXPECT_NEAR(point.curvature, 1.0 / kRadius, 1e-4);
-    EXPECT_NEAR(point.position.norm(), kRadius, 0.01);
+    EXPECT_NEAR(point.curvature, 1.0 / kCornerRadius, 1e-4);
+    EXPECT_NEAR(point.position.norm(), kCornerRadius, 0.01);
     EXPECT_NEAR(angle_difference(point.heading, std::atan2(point.position.y(), point.position.x())),
                 kPi / 2.0, 1e-3);
     EXPECT_NEAR(point.left, 5.0, 0.01);
@@ -85,7 +85,7 @@ TEST(LinePoints, AreThePlannedCoursesPlacesAndRoom) {
   const Track track = circle();
   RacingLine line;
   line.length = track.length();
-  const double around = (kRadius + 1.0) * kTwoPi;
+  const double around = (kCornerRadius + 1.0) * kTwoPi;
   constexpr int kPoints = 200;
   for (int i = 0; i <= kPoints; ++i) {
     const double share = static_cast<double>(i) / kPoints;
@@ -99,10 +99,10 @@ TEST(LinePoints, AreThePlannedCoursesPlacesAndRoom) {
   const std::vector<LinePoint> points = line_points(track, line);
   ASSERT_EQ(points.size(), line.points.size());
   for (const LinePoint& p : points) {
-    EXPECT_NEAR(p.position.norm(), kRadius + 1.0, 0.01);
+    EXPECT_NEAR(p.position.norm(), kCornerRadius + 1.0, 0.01);
     EXPECT_NEAR(p.sideslip, -0.1, 1e-12);
     EXPECT_NEAR(angle_difference(p.heading, std::atan2(p.position.y(), p.position.x())), kPi / 2.0, 1e-3);
-    EXPECT_NEAR(p.curvature, 1.0 / (kRadius + 1.0), 1e-3 / kRadius);
+    EXPECT_NEAR(p.curvature, 1.0 / (kCornerRadius + 1.0), 1e-3 / kCornerRadius);
     EXPECT_NEAR(p.speed, 20.0, 1e-9);
     EXPECT_NEAR(p.left, 6.0, 0.01);
     EXPECT_NEAR(p.right, 2.0, 0.01);

@@ -7,9 +7,9 @@
 namespace chicane::run {
 namespace {
 
-constexpr double kRadius = 60.0;
+constexpr double kLoopRadius = 60.0;
 constexpr double kSpeed = 12.0;
-constexpr double kLapTime = kTwoPi * kRadius / kSpeed;
+constexpr double kLapTime = kTwoPi * kLoopRadius / kSpeed;
 constexpr double kPeriod = 0.12;
 
 /// A car that goes round a circle, `left` metres beside its line; `way` < 0: the other way round.
@@ -18,12 +18,12 @@ struct Car {
   double time = 100.0;
   void drive(LapLearner& learner, double duration, double left = 0.0, double way = 1.0) {
     for (double end = time + duration; time < end; time += kPeriod) {
-      const double radius = kRadius - left;
+      const double radius = kLoopRadius - left;
       learner.see(
           time,
           {.x = radius * std::cos(angle), .y = radius * std::sin(angle), .psi = angle + way * kPi / 2.0},
           kSpeed);
-      angle += way * kSpeed / kRadius * kPeriod;
+      angle += way * kSpeed / kLoopRadius * kPeriod;
     }
   }
 };
