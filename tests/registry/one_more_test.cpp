@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Built with copies of three lists that have one line more (additions.cmake), in front of the library's own:
-// what a new plant, fault or track format touches is its list, and nothing else.
+// Built with copies of lists that have one line more (CMakeLists.txt), in front of the library's own: what a
+// new plant, fault or track format touches is its list, and nothing else.
 
 #include "chicane/base/math.hpp"
 #include "chicane/protocol/schema.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Built with a copy of protocol/frame_fields.cpp that has one row more (one_more_field.cmake), in front of
-// the library's own: what a new signal touches is this table, and nothing else.
+// Built with a copy of protocol/frame_fields.cpp that has one row more (CMakeLists.txt), in front of the
+// library's own: what a new signal touches is this table, and nothing else.
 
 #include "protocol/decoded_frame.hpp"
 #include "protocol/typescript.hpp"
