@@ -7,7 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <numeric>
+#include <type_traits>
+#include <utility>
 #include <variant>
 
 #include "chicane/base/instruction_set.hpp"
@@ -24,22 +27,6 @@ using telemetry::TimeSummary;
 /// [%]
 std::array<double, 3> percent(const std::array<double, 3>& shares) {
   return {100.0 * shares[0], 100.0 * shares[1], 100.0 * shares[2]};
-}
-
-Json to_object(const LapSummary& lap) {
-  return {{"lap_time_s", lap.lap_time},
-          {"mean_speed_mps", lap.mean_speed},
-          {"top_speed_mps", lap.top_speed},
-          {"top_speed_mph", mps_to_mph(lap.top_speed)},
-          {"rms_lateral_error_m", lap.rms_lateral_error},
-          {"max_abs_lateral_error_m", lap.max_abs_lateral_error},
-          {"min_edge_distance_m", lap.min_edge_distance},
-          {"max_lateral_acceleration_mps2", lap.max_lateral_acceleration},
-          {"steering_rate_rms_radps", lap.steering_rate_rms},
-          {"sector_times_s", lap.sector_times},
-          {"corner_times_s", lap.corner_times},
-          {"gap_to_limit_percent", 100.0 * lap.gap_to_limit.value_or(telemetry::kNotMeasured)},
-          {"sector_gaps_to_limit_percent", percent(lap.sector_gaps)}};
 }
 
 /// Numbered by their order.
@@ -132,11 +119,6 @@ std::string cause_table(const RunSummary& run, const LapSummary& lap) {
   return text;
 }
 
-Json to_object(const TimeSummary& time) {
-  return {
-      {"p50", 1e6 * time.p50}, {"p99", 1e6 * time.p99}, {"p999", 1e6 * time.p999}, {"max", 1e6 * time.max}};
-}
-
 /// Times of sectors: "8.93 8.80 9.14", or "-" for a stretch that was no lap.
 std::string sectors(const LapSummary& lap) {
   const auto& times = lap.sector_times;
@@ -212,44 +194,104 @@ std::string learned_line(const controller::LearnedCar& learned) {
   return text + "\n";
 }
 
-double number_member(const Json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_number() ? found->get<double>() : std::nan("");
-}
-template <class Integer>
-Integer count_member(const Json& object, const char* key) {
-  const double value = number_member(object, key);
-  return value >= 0.0 && value < 1e9 ? static_cast<Integer>(value) : Integer{0};
-}
-std::string text_in(const Json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : "";
+/// Members of a JSON object, each written from a value or read into it. A number that is missing is read as
+/// NaN, a count as 0.
+struct Members {
+  Json& json;
+  bool is_read;
+
+  [[nodiscard]] Members part(Json& member) const {
+    if (!member.is_object()) member = Json::object();
+    return {member, is_read};
+  }
+  void only_written(const char* key, Json value) const {
+    if (!is_read) json[key] = std::move(value);
+  }
+  /// `factor`: how much larger the number is in the unit of its key.
+  void number(Json& member, double& value, double factor = 1.0) const {
+    if (!is_read) member = factor * value;
+    if (is_read) value = member.is_number() ? member.get<double>() / factor : telemetry::kNotMeasured;
+  }
+  void operator()(const char* key, double& value, double factor = 1.0) const {
+    number(json[key], value, factor);
+  }
+  void operator()(const char* key, std::integral auto& count) const {
+    double value = telemetry::kNotMeasured;
+    if (!is_read) json[key] = count;
+    if (is_read) number(json[key], value);
+    if (is_read) count = value >= 0.0 && value < 1e9 ? static_cast<std::decay_t<decltype(count)>>(value) : 0;
+  }
+  void operator()(const char* key, std::string& text) const {
+    if (!is_read) json[key] = text;
+    if (is_read) text = json[key].is_string() ? json[key].get<std::string>() : "";
+  }
+};
+
+void add(const Members& to, LapSummary& lap) {
+  to("lap_time_s", lap.lap_time);
+  to("mean_speed_mps", lap.mean_speed);
+  to("top_speed_mps", lap.top_speed);
+  to.only_written("top_speed_mph", mps_to_mph(lap.top_speed));
+  to("rms_lateral_error_m", lap.rms_lateral_error);
+  to("max_abs_lateral_error_m", lap.max_abs_lateral_error);
+  to("min_edge_distance_m", lap.min_edge_distance);
+  to("max_lateral_acceleration_mps2", lap.max_lateral_acceleration);
+  to("steering_rate_rms_radps", lap.steering_rate_rms);
+  to.only_written("sector_times_s", lap.sector_times);
+  Json& sectors = to.json["sector_times_s"];
+  for (std::size_t i = 0;
+       sectors.is_array() && sectors.size() == lap.sector_times.size() && i < sectors.size(); ++i)
+    to.number(sectors[i], lap.sector_times[i]);
+  to.only_written("corner_times_s", lap.corner_times);
+  to.only_written("gap_to_limit_percent", 100.0 * lap.gap_to_limit.value_or(telemetry::kNotMeasured));
+  to.only_written("sector_gaps_to_limit_percent", percent(lap.sector_gaps));
 }
 
-LapSummary lap_of(const Json& json) {
-  LapSummary lap;
-  if (!json.is_object()) return lap;
-  lap.lap_time = number_member(json, "lap_time_s");
-  lap.mean_speed = number_member(json, "mean_speed_mps");
-  lap.top_speed = number_member(json, "top_speed_mps");
-  lap.rms_lateral_error = number_member(json, "rms_lateral_error_m");
-  lap.max_abs_lateral_error = number_member(json, "max_abs_lateral_error_m");
-  lap.min_edge_distance = number_member(json, "min_edge_distance_m");
-  lap.max_lateral_acceleration = number_member(json, "max_lateral_acceleration_mps2");
-  lap.steering_rate_rms = number_member(json, "steering_rate_rms_radps");
-  const auto sectors_of = json.find("sector_times_s");
-  if (sectors_of != json.end() && sectors_of->is_array() && sectors_of->size() == lap.sector_times.size())
-    for (std::size_t i = 0; i < lap.sector_times.size(); ++i)
-      lap.sector_times[i] = (*sectors_of)[i].is_number() ? (*sectors_of)[i].get<double>() : std::nan("");
-  return lap;
+void add(const Members& to, TimeSummary& time) {
+  to("p50", time.p50, 1e6);
+  to("p99", time.p99, 1e6);
+  to("p999", time.p999, 1e6);
+  to("max", time.max, 1e6);
 }
 
-TimeSummary times_of(const Json& json) {
-  if (!json.is_object()) return {};
-  return {.p50 = 1e-6 * number_member(json, "p50"),
-          .p99 = 1e-6 * number_member(json, "p99"),
-          .p999 = 1e-6 * number_member(json, "p999"),
-          .max = 1e-6 * number_member(json, "max")};
+void add(const Members& to, RunSummary& run) {
+  to("track", run.track);
+  if (run.track.empty()) to.only_written("track", nullptr);
+  to("car", run.car);
+  to("controller", run.controller);
+  to("preset", run.preset);
+  to.only_written("guard", to_object(run.guard));
+  to("seed", run.seed);
+  to("latency_ms", run.latency, 1e3);
+  to.only_written("notices", run.notices);
+  to.only_written("completed", run.completed);
+  to("end_reason", run.end_reason);
+  to("laps_completed", run.laps_completed);
+  to("off_track_events", run.off_track_events);
+  to("out_of_track_time_s", run.out_of_track_time);
+  to.only_written("corners", to_object(run.corners));
+  to.only_written("laps", std::vector<Json>(run.laps.size()));
+  run.laps.resize(to.json["laps"].size());
+  for (std::size_t i = 0; i < run.laps.size(); ++i) add(to.part(to.json["laps"][i]), run.laps[i]);
+  add(to.part(to.json["total"]), run.total);
+  to.only_written("limit", to_object(run.limit));
+  to.only_written("planned_corner_times_s", run.planned_corner_times);
+  to.only_written("without", to_object(run.without));
+  to.only_written("why_no_limit", run.why_no_limit.empty() ? Json(nullptr) : Json(run.why_no_limit));
+  to.only_written("step_time_is", run.guard ? "control step" : "round trip");
+  add(to.part(to.json["step_time_us"]), run.step_time);
+  add(to.part(to.json["solve_time_us"]), run.solve_time);
+  to.only_written("solver", {{"mean_iterations", run.mean_iterations}, {"not_usable", run.not_usable}});
+  to("cycles", run.cycles);
+  to("fallbacks", run.fallbacks);
+  to.only_written("guard_reasons", guard_reasons(run));
+  to.only_written("learned", to_object(run.learned));
+  to.only_written("gate_interventions", run.gate_interventions);
+  to("deadline_misses", run.deadline_misses);
+  to("duration_s", run.duration);
+  to("wall_time_s", run.wall_time);
+  to.only_written("state_hash", fmt::format("{:016x}", run.state_hash));
+  to.only_written("arithmetic", arithmetic(chosen_instruction_set()));
 }
 
 /// Duration of the run, and the reason of its end.
@@ -270,72 +312,21 @@ std::string outcome(const RunSummary& run) {
 }  // namespace
 
 Result<RunSummary> read_run(std::string_view text) {
-  const Json json = parse_json(text);
+  Json json = parse_json(text);
   if (!json.is_object() || !json.contains("laps") || !json["laps"].is_array() || !json.contains("total") ||
       !json.contains("completed") || !json["completed"].is_boolean())
     return fail(ErrorCode::kParse, "got no result of a run, expected an object as --json prints it");
   RunSummary run;
-  run.track = text_in(json, "track");
-  run.car = text_in(json, "car");
-  run.controller = text_in(json, "controller");
-  run.preset = text_in(json, "preset");
-  run.end_reason = text_in(json, "end_reason");
-  run.seed = count_member<std::uint64_t>(json, "seed");
-  run.latency = 1e-3 * number_member(json, "latency_ms");
+  add({json, true}, run);
   run.completed = json["completed"].get<bool>();
-  run.laps_completed = count_member<int>(json, "laps_completed");
-  run.off_track_events = count_member<int>(json, "off_track_events");
-  run.out_of_track_time = number_member(json, "out_of_track_time_s");
-  run.duration = number_member(json, "duration_s");
-  run.wall_time = number_member(json, "wall_time_s");
-  for (const Json& lap : json["laps"]) run.laps.push_back(lap_of(lap));
-  run.total = lap_of(json["total"]);
-  run.step_time = times_of(json.value("step_time_us", Json()));
-  run.solve_time = times_of(json.value("solve_time_us", Json()));
-  run.cycles = count_member<std::uint64_t>(json, "cycles");
-  run.fallbacks = count_member<std::uint64_t>(json, "fallbacks");
-  run.deadline_misses = count_member<std::uint64_t>(json, "deadline_misses");
   run.laps_wanted = std::max(run.laps_completed, 1);
   return run;
 }
 
-std::string to_json(const RunSummary& run) {
-  Json laps = Json::array();
-  for (const LapSummary& lap : run.laps) laps.push_back(to_object(lap));
-  const Json report{{"track", run.track.empty() ? Json(nullptr) : Json(run.track)},
-                    {"car", run.car},
-                    {"controller", run.controller},
-                    {"preset", run.preset},
-                    {"guard", to_object(run.guard)},
-                    {"seed", run.seed},
-                    {"latency_ms", 1e3 * run.latency},
-                    {"notices", run.notices},
-                    {"completed", run.completed},
-                    {"end_reason", run.end_reason},
-                    {"laps_completed", run.laps_completed},
-                    {"off_track_events", run.off_track_events},
-                    {"out_of_track_time_s", run.out_of_track_time},
-                    {"corners", to_object(run.corners)},
-                    {"laps", laps},
-                    {"total", to_object(run.total)},
-                    {"limit", to_object(run.limit)},
-                    {"planned_corner_times_s", run.planned_corner_times},
-                    {"without", to_object(run.without)},
-                    {"why_no_limit", run.why_no_limit.empty() ? Json(nullptr) : Json(run.why_no_limit)},
-                    {"step_time_is", run.guard ? "control step" : "round trip"},
-                    {"step_time_us", to_object(run.step_time)},
-                    {"solve_time_us", to_object(run.solve_time)},
-                    {"solver", {{"mean_iterations", run.mean_iterations}, {"not_usable", run.not_usable}}},
-                    {"cycles", run.cycles},
-                    {"fallbacks", run.fallbacks},
-                    {"guard_reasons", guard_reasons(run)},
-                    {"learned", to_object(run.learned)},
-                    {"gate_interventions", run.gate_interventions},
-                    {"deadline_misses", run.deadline_misses},
-                    {"duration_s", run.duration},
-                    {"wall_time_s", run.wall_time},
-                    {"state_hash", fmt::format("{:016x}", run.state_hash)},
-                    {"arithmetic", arithmetic(chosen_instruction_set())}};
+std::string to_json(const RunSummary& summary) {
+  Json report;
+  RunSummary run = summary;
+  add({report, false}, run);
   return json_text(report, JsonLayout::kIndented) + "\n";
 }
 
