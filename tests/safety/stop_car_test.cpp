@@ -30,15 +30,18 @@ struct InABend {
   StopMotion motion;
 };
 
-/// Stiff tyres whose wheels lock, and downforce that presses the rear more than the weight does.
-TEST(StopCar, KnowsLockingWheelsAndTheBalanceOfDownforce) {
-  sim::DoubleTrackParams stiff, pressed;
+/// Stiff tyres whose wheels lock, downforce that presses the rear more than the weight does, and a motor
+/// whose friction brakes the driven wheels alone.
+TEST(StopCar, KnowsLockingWheelsTheBalanceOfDownforceAndMotors) {
+  sim::DoubleTrackParams stiff, pressed, motored;
   stiff.friction = 0.63;
   stiff.stiffness_front = 7.0;
   stiff.stiffness_rear = 19.5;
   pressed.downforce_front = 0.4;
   pressed.downforce_rear = 1.6;
-  for (const auto& [params, throttle] : {std::pair{stiff, -0.55}, std::pair{pressed, -0.1}}) {
+  motored.drive_friction = 2.0 * motored.mass;
+  for (const auto& [params, throttle] :
+       {std::pair{stiff, -0.55}, std::pair{pressed, -0.1}, std::pair{motored, 0.0}}) {
     InABend bend(params.downforce_rear > 0.0 ? 45.0 : 25.0, 0.025, params);
     const StopCar car(sim::model_of(params));
     StopMotion at = bend.motion;

@@ -115,6 +115,7 @@ TEST(DoubleTrack, ThePlantOfAModelHasThatModel) {
   found.brake_acceleration *= 0.7;
   found.steer_lag = 0.08;
   found.drag_constant *= 1.4;
+  found.drag_driven *= 0.9;
   found.drag_quadratic *= 1.5;
   const DoubleTrackParams made = plant_of(found, plant);
   const model::VehicleParams model = model_of(made, found);

@@ -61,7 +61,7 @@ class Baseline final : public CopyableController<Baseline<Law>>, public Tunable<
 
   [[nodiscard]] const StepResult& step(const model::Measurement& now,
                                        Deadline /*unused: nothing is solved*/) noexcept override {
-    if (!is_finite(now) || !line_.see(now)) return no_answer();
+    if (!std::isfinite(now.time + now.delay) || !now.is_finite() || !line_.see(now)) return no_answer();
     const road::Path& line = line_.path();
     const road::Projection here = line.project({now.x, now.y});
     const View view{line, here, angle_difference(now.psi, line.at(here.s).heading), now, elapsed(now.time)};
@@ -89,11 +89,6 @@ class Baseline final : public CopyableController<Baseline<Law>>, public Tunable<
   }
 
  private:
-  static bool is_finite(const model::Measurement& now) noexcept {
-    return std::isfinite(now.time + now.delay) && std::isfinite(now.x) && std::isfinite(now.y) &&
-           std::isfinite(now.psi) && std::isfinite(now.speed);
-  }
-
   /// Time since the last step [s]; 0 for a first step, and for a pause of a second or more.
   double elapsed(double time) noexcept {
     const double since = has_time_ ? time - last_time_ : 0.0;

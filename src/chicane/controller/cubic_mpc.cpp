@@ -48,7 +48,7 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
   [[nodiscard]] const StepResult& step(const model::Measurement& now, Deadline deadline) noexcept override {
     result_.report = {};
     result_.report.solve.status = solver::SolveStatus::kNotFinite;  // until there is an answer
-    if (!is_finite(now)) return no_answer(now);
+    if (!std::isfinite(now.time + now.steer + now.throttle) || !now.is_finite()) return no_answer(now);
     start_ = roll_forward_.predict(now);  // state when the command acts
     start_time_ = now.time + roll_forward_.compensated();
     if (!see_line(now)) return no_answer(now);  // waypoints from that state, as a cubic
@@ -91,12 +91,6 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
   }
 
  private:
-  static bool is_finite(const model::Measurement& now) noexcept {
-    return std::isfinite(now.time) && std::isfinite(now.x) && std::isfinite(now.y) &&
-           std::isfinite(now.psi) && std::isfinite(now.speed) && std::isfinite(now.steer) &&
-           std::isfinite(now.throttle);
-  }
-
   /// Fits the line in the frame of start_, and reports the measured position's offset from it.
   bool see_line(const model::Measurement& now) noexcept {
     const LocalPoints local =

@@ -207,7 +207,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   }
 
   void watch_sight(const model::Measurement& now) noexcept {
-    blind_.note(std::isfinite(now.x + now.y + now.psi + now.speed), now.time);
+    blind_.note(now.is_finite(), now.time);
     roadless_.note(now.waypoint_count > 0, now.time);
   }
 

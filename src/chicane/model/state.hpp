@@ -24,6 +24,7 @@ struct State {
 struct Command {
   double steer = 0.0;     ///< road-wheel angle [rad], left positive, |steer| <= VehicleParams::steer_limit
   double throttle = 0.0;  ///< one pedal in [-1, 1]: positive drives, negative brakes
+  friend bool operator==(const Command&, const Command&) = default;
 };
 
 /// A position and direction in W.
@@ -55,6 +56,9 @@ struct Measurement {
   int waypoint_count = 0;  ///< [0, kMaxWaypoints]
   std::array<Vec2, kMaxWaypoints>
       waypoints{};  ///< position in W [m], in driving order; the first may be behind the car
+
+  /// Whether position, yaw and speed are measured: a sensor that failed reports a NaN.
+  [[nodiscard]] bool is_finite() const noexcept { return std::isfinite(x + y + psi + speed); }
 };
 
 }  // namespace chicane::model

@@ -57,7 +57,10 @@ constexpr std::array kOptions{
     option<&P::drive_power_per_mass>("drive_power_per_mass", unit::kPowerPerMass, 0.1, 1e5,
                                      "Cap of drive acceleration times speed.")
         .or_infinite(),
-    option<&P::drag_constant>("drag_constant", unit::kAcceleration, 0, 1000, "Rolling resistance."),
+    option<&P::drag_constant>("drag_constant", unit::kAcceleration, 0, 1000,
+                              "Rolling resistance, and friction of motor and gears."),
+    option<&P::drag_driven>("drag_driven", unit::kAcceleration, 0, 1000,
+                            "Part of that on the driven wheels alone: friction of motor and gears."),
     option<&P::drag_linear>("drag_linear", unit::per("1/s"), 0, 10, "Deceleration for each m/s."),
     option<&P::drag_quadratic>("drag_quadratic", unit::per("1/m"), 0, 1, "Deceleration for each (m/s)²."),
     option<&P::brake_acceleration>(

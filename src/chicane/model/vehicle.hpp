@@ -110,7 +110,8 @@ struct VehicleParams : CarBody {
   double drive_acceleration = 5.43;  ///< at full throttle and rest [m/s²]
   double drive_power_per_mass =
       std::numeric_limits<double>::infinity();  ///< cap of drive acceleration · v [W/kg]
-  double drag_constant = 0.0;                   ///< rolling resistance [m/s²]
+  double drag_constant = 0.0;                   ///< rolling resistance, motor and gears [m/s²]
+  double drag_driven = 0.0;                     ///< part of it that acts on the driven wheels alone [m/s²]
   double drag_linear = 0.104;                   ///< [1/s]
   double drag_quadratic = 0.0;                  ///< [1/m]
   double brake_acceleration = 218.0;  ///< per unit of negative throttle, before the wheels lock [m/s²]

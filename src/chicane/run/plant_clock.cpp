@@ -85,8 +85,7 @@ bool PlantClock::advance(Clock::time_point received, const model::Measurement* m
   wall_ = received;
   if (options_.is_measured) return follow(measured);
   Leg step;
-  const bool is_whole =
-      measured != nullptr && std::isfinite(measured->x + measured->y + measured->psi + measured->speed);
+  const bool is_whole = measured != nullptr && measured->is_finite();
   if (is_whole && has_last_ && options_.is_estimated && wall > 0.0 && wall < kLongestStep)
     step = step_of(wall, *measured, acting);
   time_ += time_of(wall, step);

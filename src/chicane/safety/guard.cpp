@@ -35,10 +35,6 @@ bool plans_with_car(const controller::Controller& controller) noexcept {
   return controller.constraints().size() > controller::kInputConstraintNames.size();
 }
 
-bool is_same(const model::Command& a, const model::Command& b) noexcept {
-  return a.steer == b.steer && a.throttle == b.throttle;
-}
-
 }  // namespace
 
 Guard::Guard(std::unique_ptr<controller::Controller> controller, const model::VehicleParams& vehicle,
@@ -156,8 +152,8 @@ void Guard::send(const Cycle& cycle, const model::Command& asked, controller::St
   const model::Command commanded = answer_.command_for(result.command);
   const GateResult gated = gate_.pass(cycle.manual.value_or(commanded), cycle.interval);
   result.command = gated.command;
-  report_.gated = gated.reason != GateReason::kNone ||
-                  !is_same(gated.command, cycle.manual.value_or(answer_.command_for(asked)));
+  report_.gated =
+      gated.reason != GateReason::kNone || gated.command != cycle.manual.value_or(answer_.command_for(asked));
   const model::Command effect = answer_.effect_of(gated.command);
   controller_->note_sent(effect);
   if (!std::isfinite(sent_from_)) return;
@@ -341,7 +337,7 @@ bool Guard::slow_down(const StopStart& start, const Cycle& cycle, controller::St
 model::Command Guard::limited(const model::Command& command, double interval) const noexcept {
   const model::Command commanded = answer_.command_for(command);
   const model::Command gated = gate_.limited(commanded, interval).command;
-  model::Command inside = is_same(gated, commanded) ? command : answer_.effect_of(gated);
+  model::Command inside = gated == commanded ? command : answer_.effect_of(gated);
   const model::VehicleParams& car = model_.vehicle();
   const double v = act_speed_;
   if (inside.throttle > 0.0) {

@@ -281,7 +281,7 @@ void Guard::begin_here() noexcept {
 /// A controller without an answer to whole measurements begins anew now and then: the car may have been put
 /// where its road, or its estimate, does not lead.
 void Guard::watch_answer(const model::Measurement& seen, bool has_answer) noexcept {
-  if (has_answer || !std::isfinite(seen.x + seen.y + seen.psi + seen.speed)) run_.answered.at = seen.time;
+  if (has_answer || !seen.is_finite()) run_.answered.at = seen.time;
   if (!(run_.answered.lasts(seen.time) > kNoAnswerTime)) return;
   controller_->reset();
   run_.answered.at = seen.time;
@@ -309,7 +309,10 @@ bool Guard::try_reset(const std::optional<StopStart>& start, const Cycle& cycle,
     const model::VehicleParams vehicle = led_vehicle();
     const double lock = std::copysign(vehicle.steer_limit, -start->e);
     const double kept = std::min(edge, kKeptShare * options_.margin) - kCreepNearer;
-    if (!(creeping_edge(filter_.planner(), road_, *start, lock, vehicle) > kept)) return false;
+    if (!(creeping_edge(filter_.planner(), road_, *start, lock, vehicle) > kept)) {
+      report_.reason = controller::GuardReason::kFacesEdge;
+      return false;
+    }
     const bool has_turned = std::fabs(lock - start->body.steer) < kTurnedWheels * vehicle.steer_limit;
     command = has_turned ? creep(lock, speed, vehicle) : model::Command{lock, 0.0};
     filter_.withdraw_stop();

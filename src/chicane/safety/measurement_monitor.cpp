@@ -226,7 +226,7 @@ bool ResetWatch::rests() const noexcept {
 
 void ResetWatch::see(const model::Measurement& now, double pedal) noexcept {
   has_answered_ = has_jumped_ = false;
-  if (!std::isfinite(now.time + now.x + now.y + now.psi + now.speed)) return;
+  if (!std::isfinite(now.time) || !now.is_finite()) return;
   if (has_last_ && now.time <= last_.time) return;
   has_jumped_ = has_last_ && jumps(now);
   const double elapsed = now.time - last_.time;

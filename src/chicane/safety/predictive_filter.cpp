@@ -92,6 +92,8 @@ constexpr Law kLaws[] = {{kGentle},
                          {kHard, 3.0, 0.8, 0.6, 2.0},
                          {kHard, 1.0, 0.4, 0.6, 3.0},
                          {kHard, 3.0, 0.8, 0.6, 3.0}};
+/// Driven where no law holds: brakes that let go leave the tyres to the wheel.
+constexpr Law kReleased{{0.3, 3.0}, 2.0, 0.8};
 constexpr int kLawCount = static_cast<int>(std::size(kLaws));
 constexpr int kOffLap = 13;     // of them on a road without a planned lap
 constexpr int kSlowWheels = 5;  // of them there for cars with four wheels: more feedback makes them weave
@@ -344,8 +346,9 @@ bool PredictiveFilter::drive(const road::KnownRoad& road, const StopStart& start
     promised_ = goes_on ? std::max(promised_, edge) : edge;
     lost_ = std::max((goes_on ? 1.0 : kKeptLoss) * lost_, std::min(promised_ - edge, kMostLoss));
   }
-  for (int i = 0; i < kDriven && best.fit < Fit::kOpen; ++i) {
-    const Law& law = kLaws[i];
+  for (int i = 0; i <= kDriven && best.fit < Fit::kOpen; ++i) {
+    if (i == kDriven && best.fit != Fit::kNone) break;
+    const Law& law = i == kDriven ? kReleased : kLaws[i];
     if (is_open && law.braking.share < 1.0) continue;
     const Candidate before = best;
     // One that also holds blindly comes before the stored one, one that is only as good does not.

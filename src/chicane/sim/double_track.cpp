@@ -132,6 +132,7 @@ model::VehicleParams model_of(const DoubleTrackParams& p, model::VehicleParams b
   m.drive_power_per_mass = p.drive_power / inertia;
   m.drag_constant =
       (p.rolling_resistance * DoubleTrackParams::kGravity * p.mass + p.drive_friction) / inertia;
+  m.drag_driven = p.drive_friction / inertia;
   m.drag_linear = 0.0;
   m.drag_quadratic = (p.drag + p.rolling_resistance * downforce) / inertia;
   m.brake_acceleration = p.brake_force / inertia;
@@ -158,7 +159,7 @@ DoubleTrackParams plant_of(const model::VehicleParams& m, DoubleTrackParams like
   if (m.drive_power_per_mass < std::numeric_limits<double>::infinity())
     p.drive_power = m.drive_power_per_mass * inertia;
   const double resistance = m.drag_constant * inertia;
-  p.drive_friction = std::min(like.drive_friction, resistance);
+  p.drive_friction = std::min(m.drag_driven * inertia, resistance);
   p.rolling_resistance = (resistance - p.drive_friction) / (DoubleTrackParams::kGravity * p.mass);
   p.drag = std::max(0.0, m.drag_quadratic * inertia - p.rolling_resistance * downforce);
   p.brake_force = m.brake_acceleration * inertia;

@@ -43,10 +43,6 @@ constexpr double kMostDisplaced = 1.5;  // times the way that the speed says
 constexpr double kUncertain = 1.0;      // [m] more for a noisy sensor
 constexpr double kRestingSpeed = 2.0;   // [m/s] below which the drive that stops a car fades
 
-bool is_finite(const model::Measurement& m) {
-  return std::isfinite(m.x) && std::isfinite(m.y) && std::isfinite(m.psi) && std::isfinite(m.speed);
-}
-
 }  // namespace
 
 /// The covariance over a step of the state, by the model's slopes there.
@@ -117,7 +113,7 @@ void StateEstimator::advance(Prediction& at, double from, double to, const Comma
 void DirectionWatch::see(const model::Measurement& now) noexcept {
   const double elapsed = now.time - time_;
   if (has_last_ && elapsed <= 0.0) return;  // an old or repeated measurement
-  if (!is_finite(now) || now.speed < kAtRest) return reset();
+  if (!now.is_finite() || now.speed < kAtRest) return reset();
   const double dx = now.x - x_;
   const double dy = now.y - y_;
   const double way = now.speed * elapsed;
@@ -149,14 +145,14 @@ void StateEstimator::correct(const model::Measurement& now, const CommandHistory
   direction_.see(now);
   surprise_ = {};
   const bool goes_on = is_started_ && elapsed > 0.0 && elapsed < kLongestGap;
-  if (!is_finite(now) && !goes_on) return;
+  if (!now.is_finite() && !goes_on) return;
   if (goes_on) {
     advance(now_, time_, now.time, sent, average_ > 0.0 ? nullptr : &errors_);
     const double dx = now.x - now_.state.x;
     const double dy = now.y - now_.state.y;
     const double dpsi = angle_difference(now.psi, now_.state.psi);
     const bool is_near = dx * dx + dy * dy < kLostPosition * kLostPosition && std::fabs(dpsi) < 0.5;
-    if (!is_finite(now) || is_near) {
+    if (!now.is_finite() || is_near) {
       surprise_ = {dy * cos(now_.state.psi) - dx * sin(now_.state.psi), dpsi};
       take_over(now, dx, dy, dpsi);
       return;
