@@ -56,8 +56,8 @@ class ActuatorWatch {
   static constexpr double kSlipShareUsed = 0.5;  ///< kSlipShare of a car near its limit of grip
   static constexpr double kWeak = 0.75;          ///< braking of eq. 13 below which brakes are weak
   static constexpr double kUsualFor = 1.0;       ///< [s] usual answers that end an estimate
-  static constexpr double kSlowest =
-      6.0;  ///< [m/s] slowest judged speed of a full-size car: a slower one may be led
+  /// [m/s] Slowest judged speed of a full-size car. A slower car may be led back (guard_way_back.cpp).
+  static constexpr double kSlowest = 6.0;
 
   explicit ActuatorWatch(const model::VehicleParams& vehicle) noexcept;
   void reset() noexcept;

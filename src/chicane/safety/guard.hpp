@@ -32,29 +32,33 @@ namespace chicane::safety {
 [[nodiscard]] road::KnownRoad known_road(const GuardOptions& options, const road::RoadData* road,
                                          const model::VehicleParams& vehicle);
 
-/// The guard around a controller, the same for all of them (docs/safety.md). A cycle, step():
+/// Safety filter around any controller (docs/safety.md). One cycle, step(), has six stages:
 ///
-///     1 learned     what was learned of steering and delay is driven with           take_up_actuators
-///     2 look        what of the measurement is plausible; road, actuators and       MeasurementMonitor
-///                   estimate take it in; a car that was put elsewhere begins anew   ResetWatch
-///     3 controller  its answer; it begins anew after a second without one           watch_answer
-///     4 choose      the command, the first of these that applies:
-///         off, or a person drives: the answer, or the Fallback; nothing is checked  accept, fall_back
-///         no finding lasts (Supervisor), the car is on its road, and the answer
-///         leaves a way to stop (PredictiveFilter), or it is not known where the
-///         car is: the answer                                                        filter, accept
-///         the car stands and is measured elsewhere: half a car length of driving    try_reset
-///         it is off its road, or stands refused: walking pace back to the line      lead_back
-///         the stored way to stop; the Fallback where no place on a road is known    drive_backup
-///     5 limits      a stuck car's pedals are released; range, rate, no reverse      free_stuck_car, limited
-///     6 send        the command for the actuators as they answer; CommandGate       send
+///     1 actuators   takes up what was learned of steering and delay               take_up_actuators
+///     2 look        gives the plausible part of the measurement to road,          MeasurementMonitor,
+///                   actuators and estimate; starts anew if the car was moved      ResetWatch
+///     3 controller  takes its answer; resets it after a second without one        watch_answer
+///     4 choose      chooses a command, see below                                  choose
+///     5 limits      releases the pedals of a stuck car; range, rate, no reverse   free_stuck_car, limited
+///     6 send        translates for the actuators as they answer; CommandGate      send
 ///
-/// GuardMode::kObserve does the same up to the filter, and sends the answer. Away from a planned lap each
-/// answer that passed the filter comes with a way to stop, stop(). What was chosen, and why, is in report().
+/// Stage 4 takes the first row whose condition holds:
 ///
-/// Numbers have their unit in brackets. Where they come from stands beside them or above their list: an
-/// equation of docs/guard.md, a derivation, a measurement, or *chosen*: by trial, no derivation gives it, and
-/// the runs of docs/measured/safety.md are its check.
+///     the guard is off, or a person drives       controller's answer, else Fallback    accept, fall_back
+///     no doubt lasts (Supervisor), the car is    controller's answer                   filter, accept
+///     not astray, and a stop exists after the
+///     answer or the car's place is not known
+///     a doubt lasts, the car stands              trial: half a car length              try_reset
+///     the car is astray, or stands refused       walking pace back to the line         lead_back
+///     the car's place on the road is known       the stored stop                       drive_backup
+///     none of these                              Fallback                              fall_back
+///
+/// GuardMode::kObserve computes the first two rows, and sends the controller's answer. After each answer that
+/// passed the filter a stop() is stored, except along a planned lap. report() says what was sent and why.
+///
+/// Numbers have their unit in brackets, and their origin beside them or above their list: an equation of
+/// docs/guard.md, a derivation, a measurement, or *chosen*: found by trial, checked by the runs of
+/// docs/measured/safety.md.
 ///
 /// A person's command (Cycle::manual) is sent without a check. Every sent command is finite and inside the
 /// vehicle's limits of range and rate, whatever sensors and controller deliver. No allocation after
