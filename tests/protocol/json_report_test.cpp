@@ -10,7 +10,7 @@
 namespace chicane::protocol {
 namespace {
 
-using AnyJson = nlohmann::json;
+using Tree = nlohmann::json;
 
 telemetry::RunSummary example() {
   telemetry::RunSummary run;
@@ -40,16 +40,16 @@ telemetry::RunSummary example() {
 }
 
 TEST(JsonReport, NumbersCornersWithTheirSides) {
-  const AnyJson report = AnyJson::parse(to_json(example()));
+  const Tree report = Tree::parse(to_json(example()));
   ASSERT_EQ(report["corners"].size(), 2U);
   EXPECT_EQ(report["corners"][0]["apex_m"], 30.0);
   EXPECT_NEAR(report["corners"][1]["turn_deg"].get<double>(), -180.0, 1e-9);
-  EXPECT_EQ(report["laps"][0]["corner_times_s"], (AnyJson{12.25, 16.25}));
+  EXPECT_EQ(report["laps"][0]["corner_times_s"], (Tree{12.25, 16.25}));
   EXPECT_THAT(to_table(example()), HasSubstr("corners [s]         1 left  12.25    2 right 16.25"));
 }
 
 TEST(JsonReport, HasEveryDocumentedKey) {
-  const AnyJson report = AnyJson::parse(to_json(example()));
+  const Tree report = Tree::parse(to_json(example()));
   std::istringstream keys(
       "track car controller preset seed latency_ms notices completed laps_completed off_track_events "
       "out_of_track_time_s corners laps step_time_is step_time_us solve_time_us solver fallbacks learned "
@@ -73,10 +73,10 @@ TEST(JsonReport, HasEveryDocumentedKey) {
 
 TEST(JsonReport, HasWhatTheRunLearnedInTheUnitsOfItsNames) {
   telemetry::RunSummary run = example();
-  EXPECT_EQ(AnyJson::parse(to_json(run))["learned"], nullptr);
+  EXPECT_EQ(Tree::parse(to_json(run))["learned"], nullptr);
   run.learned.delay = {0.0625, 0.005};
   run.learned.offset = {degrees_to_radians(2.0), degrees_to_radians(0.1)};
-  const AnyJson learned = AnyJson::parse(to_json(run))["learned"];
+  const Tree learned = Tree::parse(to_json(run))["learned"];
   EXPECT_EQ(learned["delay_ms"], 62.5);
   EXPECT_EQ(learned["delay_sd_ms"], 5.0);
   EXPECT_NEAR(learned["steer_offset_deg"].get<double>(), 2.0, 1e-12);
@@ -86,24 +86,24 @@ TEST(JsonReport, HasWhatTheRunLearnedInTheUnitsOfItsNames) {
 
 TEST(JsonReport, NamesTheGuardWithItsVersion) {
   telemetry::RunSummary run = example();
-  EXPECT_EQ(AnyJson::parse(to_json(run))["guard"], nullptr) << "another program drives";
+  EXPECT_EQ(Tree::parse(to_json(run))["guard"], nullptr) << "another program drives";
   run.guard = {.mode = safety::GuardMode::kObserve, .margin = 0.5, .blind_time = 2.0};
-  EXPECT_EQ(AnyJson::parse(to_json(run))["guard"], (AnyJson{{"version", safety::kGuardVersion},
-                                                            {"mode", "observe"},
-                                                            {"road", "track"},
-                                                            {"half_width_m", 3.5},
-                                                            {"receiver", "stop-plan"},
-                                                            {"margin_m", 0.5},
-                                                            {"blind_time_s", 2.0}}));
+  EXPECT_EQ(Tree::parse(to_json(run))["guard"], (Tree{{"version", safety::kGuardVersion},
+                                                      {"mode", "observe"},
+                                                      {"road", "track"},
+                                                      {"half_width_m", 3.5},
+                                                      {"receiver", "stop-plan"},
+                                                      {"margin_m", 0.5},
+                                                      {"blind_time_s", 2.0}}));
   EXPECT_THAT(to_table(run), HasSubstr("guard observe"));
   EXPECT_THAT(to_table(run), HasSubstr("control step "));
   run.guard.reset();
   EXPECT_THAT(to_table(run), HasSubstr("round trip "));
-  EXPECT_EQ(AnyJson::parse(to_json(run))["step_time_is"], "round trip");
+  EXPECT_EQ(Tree::parse(to_json(run))["step_time_is"], "round trip");
 }
 
 TEST(JsonReport, ConvertsUnits) {
-  const AnyJson report = AnyJson::parse(to_json(example()));
+  const Tree report = Tree::parse(to_json(example()));
   EXPECT_EQ(report["latency_ms"], 100.0);
   EXPECT_NEAR(report["laps"][0]["top_speed_mph"].get<double>(), 100.0, 1e-9);
   EXPECT_NEAR(report["step_time_us"]["p50"].get<double>(), 25.0, 1e-9);
@@ -115,14 +115,13 @@ TEST(JsonReport, ConvertsUnits) {
 TEST(JsonReport, TellsTheGapsToTheLimit) {
   telemetry::RunSummary run = example();
   run.why_no_limit = "the road is open";
-  EXPECT_TRUE(AnyJson::parse(to_json(run))["limit"].is_null());
-  EXPECT_EQ(AnyJson::parse(to_json(run))["why_no_limit"], "the road is open");
+  EXPECT_TRUE(Tree::parse(to_json(run))["limit"].is_null());
+  EXPECT_EQ(Tree::parse(to_json(run))["why_no_limit"], "the road is open");
   EXPECT_THAT(to_table(run), HasSubstr("limit              not known: the road is open\n"));
   telemetry::compare_with_limit(run, {.lap = 25.0, .sectors = {8.0, 9.5, 7.5}});
-  const AnyJson report = AnyJson::parse(to_json(run));
-  EXPECT_EQ(
-      report["limit"],
-      AnyJson::parse(R"({"lap_time_s": 25.0, "sector_times_s": [8.0, 9.5, 7.5], "corner_times_s": []})"));
+  const Tree report = Tree::parse(to_json(run));
+  EXPECT_EQ(report["limit"],
+            Tree::parse(R"({"lap_time_s": 25.0, "sector_times_s": [8.0, 9.5, 7.5], "corner_times_s": []})"));
   EXPECT_NEAR(report["laps"][0]["gap_to_limit_percent"].get<double>(), 14.0, 1e-9);
   EXPECT_NEAR(report["laps"][0]["sector_gaps_to_limit_percent"][0].get<double>(), 12.5, 1e-9);
   EXPECT_THAT(to_table(run), HasSubstr("limit              25.000 s, the best lap +14.00 %"));
@@ -136,10 +135,10 @@ TEST(JsonReport, TellsWhatTakesTheGapInEachCorner) {
   run.planned_corner_times = {10.0, 17.5};
   run.without = {{.cause = "latency", .lap_time = 27.5, .corners = {10.25, 17.25}},
                  {.cause = "edge margin", .off_track_events = 3}};
-  const AnyJson report = AnyJson::parse(to_json(run));
-  EXPECT_EQ(report["limit"]["corner_times_s"], AnyJson::parse("[9.0, 16.0]"));
-  EXPECT_EQ(report["planned_corner_times_s"], AnyJson::parse("[10.0, 17.5]"));
-  EXPECT_EQ(report["without"], AnyJson::parse(R"([
+  const Tree report = Tree::parse(to_json(run));
+  EXPECT_EQ(report["limit"]["corner_times_s"], Tree::parse("[9.0, 16.0]"));
+  EXPECT_EQ(report["planned_corner_times_s"], Tree::parse("[10.0, 17.5]"));
+  EXPECT_EQ(report["without"], Tree::parse(R"([
     {"cause": "latency", "lap_time_s": 27.5, "corner_times_s": [10.25, 17.25], "off_track_events": 0},
     {"cause": "edge margin", "lap_time_s": null, "corner_times_s": [], "off_track_events": 3}])"));
   const std::string table = to_table(run);
@@ -153,7 +152,7 @@ TEST(JsonReport, TellsWhatTakesTheGapInEachCorner) {
 TEST(JsonReport, WhatWasNotMeasuredIsNull) {
   telemetry::RunSummary run = example();
   run.laps[0].min_edge_distance = std::numeric_limits<double>::quiet_NaN();
-  const AnyJson report = AnyJson::parse(to_json(run));
+  const Tree report = Tree::parse(to_json(run));
   EXPECT_TRUE(report["laps"][0]["min_edge_distance_m"].is_null());
   EXPECT_TRUE(report["laps"][0]["gap_to_limit_percent"].is_null());
 }
@@ -161,7 +160,7 @@ TEST(JsonReport, WhatWasNotMeasuredIsNull) {
 TEST(JsonReport, NamesThatAreNotUtf8StillGiveJson) {
   telemetry::RunSummary run = example();
   run.track = "caf\xe9.csv";
-  EXPECT_TRUE(AnyJson::accept(to_json(run)));
+  EXPECT_TRUE(Tree::accept(to_json(run)));
 }
 
 TEST(JsonReport, TheTableSaysHowItEnded) {

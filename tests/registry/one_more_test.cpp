@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Built with copies of lists that have one line more (CMakeLists.txt), in front of the library's own: what a
-// new plant, fault or track format touches is its list, and nothing else.
+// new plant, fault, track format or signal touches is its list, and nothing else.
 
 #include "chicane/base/math.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "chicane/protocol/schema_json.hpp"
 #include "chicane/protocol/track_codec.hpp"
 #include "chicane/sim/plant_registry.hpp"
+#include "protocol/decoded_frame.hpp"
+#include "protocol/typescript.hpp"
+#include "protocol/viewer_samples.hpp"
 #include "support/chicane_test.hpp"
 #include "support/runs.hpp"
 
@@ -68,6 +71,28 @@ TEST(OneMoreTrackFormat, IsFoundReadAndDrivenOn) {
 TEST(OneMoreTrackFormat, SaysWhatIsWrongWithAFile) {
   EXPECT_EQ(protocol::parse_track("three", "a.circle").error().message,
             "a.circle:1: radius: got three, expected a number in [10, 1000] m");
+}
+
+TEST(OneMoreField, IsInTheDefinitionWithItsMeaning) {
+  const std::string schema = protocol::ros_schema("chicane_msgs/msg/Frame");
+  EXPECT_NE(schema.find("\nfloat64 half_pace                       # for a test\n"), std::string::npos)
+      << schema;
+}
+
+TEST(OneMoreField, IsInTheMessageAndMovesNoOther) {
+  const test::Values values = test::decoded(protocol::samples::frame());
+  EXPECT_EQ(values.at("half_pace"), std::vector{0.125});
+  EXPECT_EQ(values.at("active_faults"), std::vector{36.0});         // in front of it
+  EXPECT_EQ(values.at("stationarity"), std::vector{0.0009765625});  // behind it
+  EXPECT_EQ(values.at("prediction_error_m"), std::vector{0.03125});
+}
+
+TEST(OneMoreField, IsInTheTypeOfTheDashboardItsUnknownFrameAndItsColumns) {
+  const std::string text = test::typescript_messages();
+  for (const char* line :
+       {"\n  /** for a test */\n  half_pace: number;\n", "\n  half_pace: NaN,\n", "\n  'half_pace',\n"}) {
+    EXPECT_NE(text.find(line), std::string::npos) << line;
+  }
 }
 
 }  // namespace
