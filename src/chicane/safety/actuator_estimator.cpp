@@ -17,8 +17,8 @@ namespace {
 //   normal distribution).
 // - Measured: kMostApart (docs/identification.md: twice the usual).
 // - Chosen, docs/identification.md: kMostUse, kCalmFor, kAverage, kAverageSliding.
-// - Chosen, for what their lines say: kSlowest, kCounted, kKeptBehind, kFar, kCorrelated, kMostCorrelation,
-//   kShown, kMostDeviation.
+// - Chosen, for what their lines say: kKeptBehind, kCorrelated, kShown, kMostDeviation; and coarse, half or
+//   double passes each test of this module: kSlowest, kCounted, kFar, kMostCorrelation.
 constexpr double kSlowest = 5.0;          // [m/s] slower, the wheels turn the car too little
 constexpr double kLongestSilence = 0.25;  // [s] between measurements; then the estimators settle first
 constexpr double kMostUse = 0.5;          // share of peak slip or peak force: beyond it no model is exact

@@ -6,22 +6,23 @@
 #include <utility>
 
 #include "chicane/base/math.hpp"
+#include "chicane/safety/sensor_watch.hpp"
 
 namespace chicane::safety {
 namespace {
 
 // Origins (chosen: by trial, see Guard):
 // - Derived: kSpacing (just below the cycle of a sensor of 100 Hz), kAngleNoise (kBand), kLongestStep (six
-//   cycles of 25 Hz), kFullSize (as in sensor_watch.cpp).
+//   cycles of 25 Hz).
 // - Measured: the band of (12) with all its terms, and kWeak: cars as configured use 0.68 of the band at
 //   most, and their brakes give 0.77 at least (runs as in sensor_watch.cpp); with noise of 0.1 m, 0.5° and
-//   0.1 m/s 0.54 and 0.72, which the deviations cover. kLateCommand: docs/guard.md, "Late commands".
+//   0.1 m/s 0.54 and 0.72, which the deviations cover.
 // - Chosen, docs/guard.md: kShort, kLong, kMostUse, kSpareUse, kMostSideslip, kSlides, kCalmFor,
 //   kDiffersFor, kDeviations, kMemory, kGainPrior, kOffsetPrior, kUsualGain, kBraked (eq. 12, 13), kWeakFor
 //   (docs/safety.md).
 // - Chosen: kMostOffset (twice the ±7° of the attacks), kUsualOffset (above kBand); for what their lines
-//   say: kLearned, kLeastLearned, kBrakingTime, kLeastShare, kStrong, kParts.
-constexpr double kFullSize = 4.5;       // [m] length of a car in full size
+//   say: kStrong, kParts; and coarse, half or double passes each test of this module: kLearned,
+//   kLeastLearned, kBrakingTime, kLeastShare.
 constexpr double kShort = 0.12;         // [s] over which the car's motion is averaged
 constexpr double kLong = 0.4;           // [s] the same for noisy sensors, and of braking
 constexpr double kSpacing = 0.0095;     // [s] at least between samples: they reach half a second back
@@ -46,9 +47,8 @@ constexpr double kBraked = 0.25;        // of the useful braking, from which bra
 constexpr double kWeakFor = 0.12;       // [s]
 constexpr double kBrakingTime = 0.3;    // [s] in which an estimate of the braking follows
 constexpr double kLeastShare = 0.2;
-constexpr double kStrong = 0.9;        // share of the braking from which brakes are usual again
-constexpr double kLateCommand = 0.06;  // [s] by which a command may act later than configured
-constexpr int kParts = 4;              // of a step, in which the command may change
+constexpr double kStrong = 0.9;  // share of the braking from which brakes are usual again
+constexpr int kParts = 4;        // of a step, in which the command may change
 
 }  // namespace
 

@@ -194,7 +194,7 @@ bool MeasurementMonitor::contradicts_displacement(const model::Measurement& now,
 namespace {
 
 // Origins (chosen: by trial, see Guard):
-// - Chosen, for what their lines say: kSpeedError, kMemory, kStill.
+// - Chosen, for what their lines say, and coarse: half or double passes each test of this module.
 constexpr double kSpeedError = 1.5;  // times the measured speed that a car may move between two measurements
 constexpr double kMemory = 0.5;      // [s] for which the car answers to a pedal
 constexpr double kStill = 0.05;      // [m/s] of a car that stands or turns round

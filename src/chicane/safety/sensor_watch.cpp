@@ -12,17 +12,15 @@ namespace {
 
 // Origins (chosen: by trial, see Guard):
 // - Derived: kDeviations (one in two million of a normal distribution), kDrift (MeasurementMonitor's
-//   kKnownDrift), kMostCalm (twice kCalmTime), kWalking (Guard's kLedBackSpeed), kFullSize (about the mean
-//   of such cars).
+//   kKnownDrift), kMostCalm (twice kCalmTime), kWalking (Guard's kLedBackSpeed).
 // - Measured: kPlaceStep, kHeadingStep, kSpeedStep: calm cars differ by 0.10 m, 0.061 rad, 1.2 m/s at most;
 //   kSum, kSumWay, kSumShare, kSumDeviations: these cars reach 0.46 of (11) at most (five presets on
-//   lakeside and hairpins, also with latency_jitter_ms=60, perfect sensors). kLateCommand: docs/guard.md,
-//   "Late commands".
+//   lakeside and hairpins, also with latency_jitter_ms=60, perfect sensors).
 // - Chosen, docs/guard.md: kWindows, kMostSlip, kCrab, kTurned, kTurnedShare (eq. 11), kLearned, kLatest,
 //   kMostLag, kRetry ("Late measurements").
-// - Chosen, for what their lines say: kBlindDrift, kMostDrift, kSpeedDrift, kHeadingDrift,
-//   kMostHeadingDrift, kUnrest, kTried, kSilence, kStill, kMoving, kLongestStep.
-constexpr double kFullSize = 4.5;      // [m] length of a car
+// - Chosen, for what their lines say: kMostDrift, kUnrest, kTried, kSilence; and coarse, half or double
+//   passes each test of this module: kBlindDrift, kSpeedDrift, kHeadingDrift, kMostHeadingDrift, kStill,
+//   kMoving, kLongestStep.
 constexpr double kPlaceStep = 0.25;    // [m] a calm car in full size is not farther from where it is expected
 constexpr double kHeadingStep = 0.06;  // [rad] the same of its heading
 constexpr double kSpeedStep = 1.0;     // [m/s] and of its speed
@@ -39,13 +37,12 @@ constexpr double kMostDrift = 3.0;         // [m] by which a place may differ th
 constexpr double kSpeedDrift = 2.0;        // [m/s²] of the expected speed while it is not measured
 constexpr double kHeadingDrift = 0.03;     // [rad/s] of the expected heading
 constexpr double kMostHeadingDrift = 0.1;  // [rad]
-constexpr double kLatest = 1.6;    // [s] age of a measurement that can be distinguished from another place
-constexpr double kMostCalm = 4.0;  // [s] of calm that are remembered
-constexpr double kUnrest = 0.5;    // [s] of them that one restless measurement costs
-constexpr double kTried = 1.0;     // [m/s] at which a car answers to its pedal late or in time
-constexpr double kMostLag = 0.2;   // [s] by which it may
-constexpr double kRetry = 10.0;    // [s] after which it is tried again
-constexpr double kLateCommand = 0.06;  // [s] by which a command may act later than configured
+constexpr double kLatest = 1.6;       // [s] age of a measurement that can be distinguished from another place
+constexpr double kMostCalm = 4.0;     // [s] of calm that are remembered
+constexpr double kUnrest = 0.5;       // [s] of them that one restless measurement costs
+constexpr double kTried = 1.0;        // [m/s] at which a car answers to its pedal late or in time
+constexpr double kMostLag = 0.2;      // [s] by which it may
+constexpr double kRetry = 10.0;       // [s] after which it is tried again
 constexpr double kSilence = 0.2;      // [s] without a measurement, after which a car is not sure of its place
 constexpr double kMostSlip = 1.2;     // share of the estimated slip that a car may lack
 constexpr double kWalking = 6.0;      // [m/s] a slower car, in full size, may be on its way back to the road

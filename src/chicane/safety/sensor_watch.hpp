@@ -8,6 +8,11 @@
 
 namespace chicane::safety {
 
+/// Length of a car in full size, about the mean of those that ship [m].
+inline constexpr double kFullSize = 4.5;
+/// Time by which a command may act later than configured [s]: docs/guard.md, "Late commands".
+inline constexpr double kLateCommand = 0.06;
+
 /// Which signals cannot be true.
 struct SensorDoubts {
   bool late = false;     ///< whole measurements are of earlier moments
