@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Options of the commands that drive many runs, and of the other commands.
+// Rows of options of the commands that drive many runs, and of limit, import, video, bench, list, completion.
 #include <fmt/format.h>
 
 #include <string>
@@ -14,7 +14,7 @@ namespace chicane::apps {
 namespace {
 
 constexpr int kLongestHorizon =
-    200;  ///< limit of bench/problems/reference.hpp, which is not part of this program
+    200;  ///< as in bench/problems/structured_solver.hpp, which is not part of this program
 
 OptionRow start_row(std::vector<double>& start) {
   const auto take = [&start](const std::string& text) -> std::string {

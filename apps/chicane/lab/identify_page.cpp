@@ -93,7 +93,7 @@ struct ResidualKind {
 };
 
 /// Correlation of a residual with the next one: 0 for white noise.
-double next_correlation(const std::vector<double>& values) {
+double lag_one_correlation(const std::vector<double>& values) {
   double product = 0.0, square = 0.0;
   for (std::size_t i = 0; i + 1 < values.size(); ++i) {
     product += values[i] * values[i + 1];
@@ -127,7 +127,7 @@ void add_residuals(ReportDocument& document, const Identification& found) {
     }
     document.begin_chart(fmt::format("{}: rms {}, correlation {:.2f}", kind.name,
                                      number_text(std::sqrt(squares / static_cast<double>(values.size())), 3),
-                                     next_correlation(values)),
+                                     lag_one_correlation(values)),
                          "time [s]");
     document.add_series("dots", "ink", "", dots);
   }

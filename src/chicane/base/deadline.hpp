@@ -10,11 +10,10 @@
 
 namespace chicane {
 
-/// Questions that a Deadline was asked. With them a replay repeats a step without its clock: the step stops
-/// at the same question again.
+/// Calls to Deadline::spent(). With them a replay ends a step at the same call, without a clock.
 struct DeadlineLog {
-  std::uint32_t asked = 0;     ///< count of questions
-  std::uint32_t spent_at = 0;  ///< number of the first question answered with "spent", from 1; 0: none
+  std::uint32_t asked = 0;     ///< count of calls
+  std::uint32_t spent_at = 0;  ///< number of the first call that returned true, from 1; 0: none
 };
 
 /// A time budget that can be asked "spent?". Made by loops in real time and handed down: no algorithm reads a
@@ -66,8 +65,8 @@ class Deadline {
   DeadlineLog* log_ = nullptr;
 };
 
-/// Histogram of durations in fixed memory: 16 bins per octave from 1 ns to 2.4 hours. Percentiles are up to
-/// 1/16 (6.3 %) too high, the width of a bin. No allocation; one writer.
+/// Histogram of durations in fixed memory: bins of 1 ns below 16 ns, then 16 bins per octave up to 2.4 hours.
+/// Percentiles are at most one bin, 1/16 (6.3 %), too high. No allocation; one writer.
 class Durations {
  public:
   void add(std::uint64_t nanoseconds) noexcept {
@@ -91,7 +90,7 @@ class Durations {
 
  private:
   static constexpr std::size_t kPerOctave = 16;  ///< bins; durations below 16 ns have one each
-  static constexpr std::size_t kOctaves = 40;    ///< the first counts from 8 ns: the last ends at 2^43 ns
+  static constexpr std::size_t kOctaves = 40;    ///< blocks of kPerOctave bins, from 0 to 2^43 ns
   static std::size_t bin(std::uint64_t ns) noexcept {
     if (ns < kPerOctave) return static_cast<std::size_t>(ns);
     const auto octave = static_cast<std::size_t>(std::bit_width(ns) - 5);

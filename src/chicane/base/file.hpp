@@ -14,7 +14,7 @@ namespace chicane {
 /// Pipes, devices, and files in a folder that takes no new file are written directly.
 class FileWriter {
  public:
-  /// `mode`: permissions of a new file, less the umask; 0666: everybody reads and writes.
+  /// `mode`: permissions of a new file before the umask; 0666: all users may read and write.
   explicit FileWriter(std::string path, unsigned mode = 0666);
   FileWriter(const FileWriter&) = delete;
   FileWriter& operator=(const FileWriter&) = delete;

@@ -11,7 +11,8 @@
 
 namespace chicane {
 
-/// Arithmetic, elementary functions and choices for jets (jet_rules.hpp), and one type for many of them.
+/// Arithmetic, elementary functions and choices for jets (jet_rules.hpp), and a common type for mixed
+/// arguments.
 
 // ---- arithmetic
 
@@ -218,7 +219,7 @@ template <AnyJet A>
   return select(a.v < 0.0, -a, a);
 }
 
-// ---- one type for many
+// ---- a common type for mixed arguments
 
 namespace jet {
 
@@ -255,8 +256,8 @@ requires(AnyLooseJet<T> || ...) struct Common<T...> : LooseOf<T...> {
 template <class... T>
 using Common = typename jet::Common<std::remove_cvref_t<T>...>::Type;
 
-/// More functions for jets, beside those of jet.hpp, and smooth ones for any scalar. All are found by their
-/// arguments: models write them without `chicane::` and without `using`.
+/// asin, acos, pow and hypot for jets, and smooth functions for any scalar. Argument-dependent look-up finds
+/// them: models write neither `chicane::` nor `using`.
 ///
 /// Where a derivative is infinite or does not exist, it is not a number, and a solve that comes there ends
 /// *not finite*: asin and acos at ±1 and beyond, pow with an exponent below 2 that is not whole at 0 (and for
@@ -323,8 +324,8 @@ template <AnyJet A, ConstantFor<A> S>
   return atan2(Jet<typename A::Value, A::kOrder, 0>(y), x);
 }
 
-// ---- smooth in place of abs, max, min, positive_part and a step: within about `width` of the edge (> 0, in
-// the unit of x) they are round, elsewhere they are the sharp ones but for less than width² / |x|.
+// ---- smooth abs, max, min, positive part and step: round within about `width` (> 0, unit of x) of the edge.
+// Farther away they differ from the sharp ones by less than width² / |x|, the step by exp(−2 |x| / width).
 
 /// √(x² + width²): `width` above |x| at 0.
 template <class T>

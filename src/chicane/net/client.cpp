@@ -69,7 +69,8 @@ std::string_view header(std::string_view head, std::string_view name) {
   return {};
 }
 
-/// A connected TCP socket, non-blocking, with everything bounded by a point in time.
+/// A connected, non-blocking TCP socket. Each call returns by its `end`, but for the name look-up in
+/// connect().
 class Socket {
  public:
   Socket() = default;
@@ -151,7 +152,8 @@ class Socket {
     const auto left = std::chrono::ceil<Milliseconds>(end - Clock::now()).count();
     if (left <= 0) return false;
     pollfd entry{handle_, events, 0};
-    return ::poll(&entry, 1, static_cast<int>(std::min<std::int64_t>(left, 3'600'000))) != 0;
+    const int ready = ::poll(&entry, 1, static_cast<int>(std::min<std::int64_t>(left, 3'600'000)));
+    return ready < 0 && errno == EINTR ? wait(events, end) : ready > 0;
   }
 
   int handle_ = -1;
@@ -163,7 +165,8 @@ class WebSocketClient final : public Client {
 
   ~WebSocketClient() override {
     if (is_open_)
-      static_cast<void>(send_frame(kClose, std::string("\x03\xe8", 2), Milliseconds{100}));  // 1000
+      static_cast<void>(send_frame(kClose, std::string("\x03\xe8", 2),
+                                   Milliseconds{100}));  // normal closure, RFC 6455 7.4.1
   }
 
   Result<void> shake_hands(const Url& url, Clock::time_point end) {

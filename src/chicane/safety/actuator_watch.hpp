@@ -53,7 +53,7 @@ class ActuatorWatch {
   static constexpr double kBand = 0.01;      ///< [rad] constant part
   static constexpr double kBandShare = 0.1;  ///< part that grows with the angle
   static constexpr double kSlipShare = 0.2;  ///< part that grows with the slip of the axle that slips more
-  static constexpr double kSlipShareUsed = 0.5;  ///< kSlipShare of a car near its limit of grip
+  static constexpr double kSlipShareUsed = 0.5;  ///< in place of kSlipShare near the limit of grip
   static constexpr double kWeak = 0.75;          ///< braking of eq. 13 below which brakes are weak
   static constexpr double kUsualFor = 1.0;       ///< [s] usual answers that end an estimate
   /// [m/s] Slowest judged speed of a full-size car. A slower car may be led back (guard_way_back.cpp).
@@ -70,8 +70,8 @@ class ActuatorWatch {
     double rear = 0.0;
     std::optional<double> sideslip{};  ///< estimated sideslip of the car [rad]
   };
-  /// Takes in a plausible measurement; `sent`: commands to the actuators. Steering is not judged while the
-  /// rear axle slides, brakes while either axle does.
+  /// Updates the estimates with a plausible measurement; `sent`: commands to the actuators. Steering is not
+  /// judged while the rear axle slides, brakes while either axle does.
   void see(const model::Measurement& now, const tracking::CommandHistory& sent, const AxleUse& use) noexcept;
   /// Begins anew with the next measurement, because this cycle has no plausible one.
   void skip() noexcept { count_ = 0; }

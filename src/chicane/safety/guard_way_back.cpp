@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The guard with its options, with the road that it knows (docs/safety.md, "Settings"), and with a car that
-// stands, rolls back, is off its road or was put elsewhere (docs/safety.md, "The way back").
+// Guard: its options and known road (docs/safety.md, "Settings"), and the recovery of a car that stands,
+// rolls back, is off the road or was moved (docs/safety.md, "The way back").
 #include <algorithm>
 #include <array>
 #include <string_view>
@@ -266,7 +266,7 @@ bool Guard::agrees_with_road(const model::Measurement& measured) const noexcept 
   return size < 2;
 }
 
-/// Nothing that was computed of the car before holds; what was learned of a road may be another one's.
+/// Resets all estimates. A road learned from waypoints is dropped, too: the car may be on another one.
 void Guard::begin_here() noexcept {
   estimator_.reset();
   monitor_.reset();
@@ -371,9 +371,9 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   const std::optional<StopStart> start = place_on_road(act);
   if (run_.is_astray) filter_.forget();
   const double edge = start ? filter_.planner().edge(road_, *start) : 0.0;
-  const bool stands = std::fabs(car.vx) < kStandingSpeed && !rolls_back;
+  const bool will_stand = std::fabs(car.vx) < kStandingSpeed && !rolls_back;
   const bool is_on_road = start && edge >= 0.0;
-  const bool creeps = stands || (std::fabs(car.vx) < kStillCreeps * kCreep && !rolls_back);
+  const bool creeps = will_stand || (std::fabs(car.vx) < kStillCreeps * kCreep && !rolls_back);
   // An arc that has begun counts to its end without a margin: the car may stray by millimetres from it.
   run_.creeps &= creeps && is_on_road;
   const double least = run_.creeps ? kCreepNearer : kKeptShare * options_.margin;
@@ -392,10 +392,10 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
     run_.goes_round = !goes_on && !stays(lock) && stays(-lock, true);
     result.command = creep(goes_on ? car.steer : run_.goes_round ? -lock : lock, car.vx, vehicle);
   }
-  // Who drives before the wheels have turned uses the room that turning takes.
+  // The wheels turn at standstill: driving meanwhile would use up the room to the edge.
   const bool has_turned = std::fabs(steer - car.steer) < kTurnedWheels * vehicle.steer_limit;
-  const bool waits = stands && is_on_road && !(turns_as_asked(act, car) && has_turned);
-  if (stands && result.command.throttle > 0.0) result.command = creep(steer, car.vx, vehicle);
+  const bool waits = will_stand && is_on_road && !(turns_as_asked(act, car) && has_turned);
+  if (will_stand && result.command.throttle > 0.0) result.command = creep(steer, car.vx, vehicle);
   Fit fit = start && !waits ? verify(*start, cycle, result.command, true) : Fit::kNone;
   if (fit == Fit::kNone && creeps && is_on_road && !waits && has_turned &&
       stays(car.steer, run_.goes_round)) {
@@ -403,15 +403,15 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
     fit = Fit::kSeen;
     run_.creeps = true;
   }
-  // On the road the car comes no nearer to the edge, but for a controller that cannot drive on from there,
-  // and once it stands. Otherwise a car that creeps or stands turns its wheels: it needs less room then.
+  // Without a verified stop only a car that has stood astray, with a controller that cannot drive, may near
+  // the edge. Any other keeps its stop and turns its wheels: with turned wheels it needs less room.
   const bool may_leave = run_.has_stood_astray && !waits && result.answer != Answer::kDrive;
   if (is_on_road && fit == Fit::kNone && !may_leave) {
     const double turned_to = steer;
-    if (stands && !waits && !stays(steer, run_.goes_round))
+    if (will_stand && !waits && !stays(steer, run_.goes_round))
       report_.reason = controller::GuardReason::kFacesEdge;
     const bool has_stop = creeps && drive_backup(*start, result);
-    if (!has_stop && !stands) return false;
+    if (!has_stop && !will_stand) return false;
     if (!has_stop) take_over({turned_to, 0.0}, Rung::kReturnToRoad, result);
     steer = turned_to;
     filter_.withdraw_stop();  // a receiver that plays the stop from now on would turn the wheels back
@@ -430,8 +430,8 @@ model::VehicleParams Guard::led_vehicle() const noexcept {
   return vehicle;
 }
 
-/// Whether a car that is led turns as its wheels say. Where it does not, it stands for a while: its way is
-/// another one than is verified.
+/// Whether the led car turns as its wheels' angle predicts. If not, it waits: it would leave the way that
+/// verify() has checked.
 bool Guard::turns_as_asked(double time, const model::State& car) noexcept {
   const model::State& now = estimator_.state();
   const model::Pose from = run_.led_from;

@@ -41,7 +41,7 @@ struct CampaignTrial {
   bool stands = false;         ///< stands at the end
   std::int64_t replaced = 0;   ///< control steps that were not the controller's own answer
 
-  /// Tells `row` the name in JSON and the place of each value. `Self`: CampaignTrial, const or not.
+  /// Calls `row` with the key in JSON and the member of each value. `Self`: CampaignTrial, const or not.
   template <class Self, class Row>
   static void rows(Self& trial, Row&& row) {
     row("at_s", trial.at);
@@ -66,9 +66,9 @@ struct CampaignGroup {
 [[nodiscard]] Settings settings_of(const Settings& fixed, const CampaignGroup& group,
                                    const CampaignTrial& trial);
 
-/// Rule that drives a group of trials as a run of the campaign's plan, for drive_plan() with one thread:
-/// trials have `jobs` threads (run::drive_trials()). What comes before the faults is driven once for the
-/// trials of several groups. A line depends on the campaign and its number alone.
+/// Rule for drive_plan() that drives one group of trials. drive_plan() gets one thread: the trials have
+/// `jobs` threads (run::drive_trials()) and share the laps before the faults. A result line depends only on
+/// the campaign and the number of the run.
 [[nodiscard]] RunRule rule_of(const Campaign& campaign, int jobs, const std::atomic<bool>& stop);
 
 /// The group of a line of the results; kParse for another line.

@@ -24,7 +24,7 @@ namespace chicane::sweep {
 /// Settings as an object of texts, and back. Throws Json::exception for another value.
 [[nodiscard]] protocol::Json json_of(const Settings& settings);
 [[nodiscard]] Settings settings_in(const protocol::Json& json);
-/// Text unchanged, all else as JSON.
+/// A text without quotes, any other value as JSON.
 [[nodiscard]] std::string plain_text(const protocol::Json& value);
 
 /// First line, without its line break: results with the same line belong together.
@@ -37,7 +37,7 @@ struct Header {
   std::uint64_t runs = 0;
   Settings fixed{};
   std::vector<std::string> keys{}, columns{};
-  Cases cases{};  ///< settings behind names among the values of the keys
+  Cases cases{};  ///< settings of each named case
   std::vector<Settings> marks{};
   std::string search_key{};  ///< key whose largest clean value each run has searched; empty: none
 };
@@ -55,7 +55,7 @@ struct LinePlace {
 /// Contents found by reading a file.
 struct FileContents {
   std::string header;
-  std::uint64_t whole = 0;  ///< bytes up to the last line break
+  std::uint64_t whole = 0;  ///< bytes of complete lines
 };
 /// Reads a file line by line; memory does not grow with it. `on_first` gets the first line, `on_line` each
 /// further one. A last line without its line break, which a killed process has left, is skipped. An error of
@@ -97,7 +97,7 @@ class LineFile {
   std::mutex mutex_{};
 };
 
-/// The results of a sweep that are written.
+/// Result file of one shard of a sweep, open for appending.
 class ResultFile {
  public:
   /// Opens as LineFile::open() does, and finds out which runs of the shard are done. kInvalidArgument if it

@@ -46,7 +46,7 @@ function Modes() {
   );
 }
 
-/** The only button that is always there; Space presses it. */
+/** Main button of the state of the run (pause, resume, drive again, …), if it has one; Space presses it. */
 function One() {
   const now = oneButton.value;
   if (!now) return null;
@@ -57,7 +57,7 @@ function One() {
   );
 }
 
-/** What the program says once, and another run than before; screen readers announce it. */
+/** Notices, and the warning that a restarted program drives another run; screen readers announce both. */
 function Notes() {
   return (
     <div aria-live="polite">

@@ -2,14 +2,14 @@ import { useRef } from 'preact/hooks';
 import { sentenceOf } from '../lib/words';
 import { situation } from '../state/situation';
 
-/** What happens now: `alarm` where a person must know or act. */
+/** State of the run in words; `alarm`: a person must know or act. */
 export interface Situation {
   readonly kind: 'driving' | 'manual' | 'alarm';
   readonly text: string;
   readonly why: string;
 }
 
-/** The remedy by keys: beside an alarm stand the buttons with these keys. */
+/** Part of `ends_it` that names keys (telemetry/frame.cpp): left out, since an alarm has their buttons. */
 const KEYS_REMEDY = / ?On the dashboard, [^.]*\./;
 
 /** What the program says of the frame that is shown; null without one. */

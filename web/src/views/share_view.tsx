@@ -37,7 +37,7 @@ export function listenForLinks(): void {
   read();
 }
 
-/** The link to the run that goes on, and the command that begins it. */
+/** Dialog with a link to the current run and the command that starts it, or why it cannot be shared. */
 function Offer() {
   const close = (): void => {
     isOpen.value = false;
@@ -80,7 +80,7 @@ async function accept(): Promise<void> {
   if (refused.length > 0) notice.value = `Not all that the link asks for is driven: ${refused.join('; ')}`;
 }
 
-/** Asks whether the run that the address holds is to be driven. */
+/** Dialog that asks before the run of a link replaces the current one. */
 function Question() {
   const decline = (): void => {
     wantedTexts.value = null;

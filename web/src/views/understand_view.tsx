@@ -21,7 +21,7 @@ import { run } from '../state/run';
 import { startSettings } from '../state/settings';
 import { EngineerView } from './engineer_view';
 
-// Where does it lose time: one sentence, one cursor, and what solver and controller did behind a switch.
+// Compares two laps on the map, by corner and in plots, with one cursor; a switch adds solver and guard.
 
 /** Whether what solver and controller did is shown. */
 export const isEngineer = persisted<boolean>('engineer', false);
@@ -62,7 +62,7 @@ function EngineerSwitch() {
 
 /** What is missing for a comparison, as a sentence. */
 export function waitingFor(): string {
-  void sampledLaps.value;
+  void sampledLaps.value; // rendered again when laps are sampled
   if (!run.value) return 'Waiting for a run.';
   if (!run.value.is_closed) return 'This road is open: it has no laps to compare.';
   if (pastLeft.value > 0) return 'Reading the laps that were driven.';
@@ -111,7 +111,7 @@ function Causes({ both }: { both: Comparison }) {
   );
 }
 
-/** All laps, behind a line to press; and what can be taken away or added. */
+/** Collapsed table of all laps, with downloads as CSV and recordings to compare with. */
 function AllLaps({ both }: { both: Comparison | null }) {
   const parts = [run.value?.track ?? '', run.value?.controller ?? ''];
   const lap = Number(/^lap (\d+)$/.exec(both?.a.id ?? '')?.[1] ?? NaN);

@@ -14,7 +14,7 @@
 #if defined(__AVX__)
 #include <immintrin.h>
 #elif defined(__x86_64__)
-#include <emmintrin.h>  // a third of the compiler's memory for all sets
+#include <emmintrin.h>  // SSE2 alone: a third of the compiler's memory for immintrin.h
 #elif defined(__aarch64__)
 #include <arm_neon.h>
 #endif
@@ -30,8 +30,8 @@ struct Lanes {
   using Integer [[gnu::vector_size(W * 8)]] = long long;
   using Unsigned [[gnu::vector_size(W * 8)]] = unsigned long long;
 
-  /// A register's worth of doubles at a multiple of its size, and at any address. Not by memcpy: a variable
-  /// whose address is taken stays in memory.
+  /// Aligned and unaligned load and store of one register. Not by memcpy, which takes the variable's address
+  /// and so keeps it in memory.
   CHICANE_INLINE static Real load(const double* from) noexcept {
     return *static_cast<const Aligned*>(static_cast<const void*>(from));
   }
@@ -123,9 +123,10 @@ struct Ops<arch::Baseline, 2> : Portable<2> {
 #endif
 
 #if defined(__AVX2__) && defined(__FMA__)
+constexpr int kToNearest = _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC;
 template <>
 struct Ops<arch::Avx2, 2> : Ops<arch::Baseline, 2> {
-  CHICANE_INLINE static Real round(Real a) noexcept { return _mm_round_pd(a, 8); }
+  CHICANE_INLINE static Real round(Real a) noexcept { return _mm_round_pd(a, kToNearest); }
   CHICANE_INLINE static Real fused_multiply_add(Real a, Real b, Real c) noexcept {
     return _mm_fmadd_pd(a, b, c);
   }
@@ -144,7 +145,7 @@ struct Ops<arch::Avx2, 4> : Portable<4> {
   CHICANE_INLINE static Real min(Real a, Real b) noexcept { return _mm256_min_pd(a, b); }
   CHICANE_INLINE static Real max(Real a, Real b) noexcept { return _mm256_max_pd(a, b); }
   CHICANE_INLINE static Real sqrt(Real a) noexcept { return _mm256_sqrt_pd(a); }
-  CHICANE_INLINE static Real round(Real a) noexcept { return _mm256_round_pd(a, 8); }
+  CHICANE_INLINE static Real round(Real a) noexcept { return _mm256_round_pd(a, kToNearest); }
   CHICANE_INLINE static Real fused_multiply_add(Real a, Real b, Real c) noexcept {
     return _mm256_fmadd_pd(a, b, c);
   }
@@ -179,7 +180,7 @@ struct Ops<arch::Avx512, 8> : Portable<8> {
   CHICANE_INLINE static Real min(Real a, Real b) noexcept { return _mm512_min_pd(a, b); }
   CHICANE_INLINE static Real max(Real a, Real b) noexcept { return _mm512_max_pd(a, b); }
   CHICANE_INLINE static Real sqrt(Real a) noexcept { return _mm512_sqrt_pd(a); }
-  CHICANE_INLINE static Real round(Real a) noexcept { return _mm512_roundscale_pd(a, 8); }
+  CHICANE_INLINE static Real round(Real a) noexcept { return _mm512_roundscale_pd(a, kToNearest); }
   CHICANE_INLINE static Real fused_multiply_add(Real a, Real b, Real c) noexcept {
     return _mm512_fmadd_pd(a, b, c);
   }
