@@ -92,7 +92,7 @@ constexpr Law kLaws[] = {{kGentle},
                          {kHard, 3.0, 0.8, 0.6, 2.0},
                          {kHard, 1.0, 0.4, 0.6, 3.0},
                          {kHard, 3.0, 0.8, 0.6, 3.0}};
-/// Driven where no law holds: brakes that let go leave the tyres to the wheel.
+/// Driven where no law holds: brakes that let go leave the tyres to the wheel. Chosen.
 constexpr Law kReleased{{0.3, 3.0}, 2.0, 0.8};
 constexpr int kLawCount = static_cast<int>(std::size(kLaws));
 constexpr int kOffLap = 13;     // of them on a road without a planned lap
