@@ -13,7 +13,44 @@
 namespace chicane::run {
 namespace {
 
-// Lengths and speeds hold for a car in full size. The numbers were chosen.
+// Values hold for a car in full size. For a smaller one kLegWay and kJump are reduced with its length, and
+// kLeastSpeed, kLeastAsked and kSampledSpeed with the root of its length. The others stay.
+//
+// Origins, also of the constants in the header (chosen: by trial, see Guard). "Test" is plant_clock_test.
+// Derived:
+// - kFullSize: mean length of the full-size cars in data/cars (4.57 m).
+// - kLongestCycle: StateEstimator::kLongestGap, and the largest --lock-step-ms.
+// - kSampling: physics step of the original (docs/model.md, table 1).
+// - kLegSamples: one physics step more or less is a fifth of a leg, well within kOtherClock. The leg of 0.1 s
+//   is shorter than a cycle of the original.
+// - kOtherClock: above that fifth (|log 0.8| = 0.22), below a clock of half the speed (|log 0.5| = 0.69).
+// - kFaster: in real time, a message that is late by a whole cycle makes the next leg twice as fast.
+// Measured, by simulated exchanges:
+// - kLeastDeviation: a lock step of 20 ms is found with 3 ms, and not with 4 ms.
+// - kLegs: at ratio 0.2 with a jitter of 30 % and physics of 20 ms, 5 of 16 runs of 20 s change to lock step
+//   and back. With 10 legs 12 runs do. With 14 it is 4 runs, but the test's changing clock is found too late.
+// - kSteadier: of the same runs 8 change with 0.7, and 2 with 0.25.
+// Chosen, docs/protocol.md ("Time"):
+// - kSlowest, kFastest: the range that is documented. kLongestStep: the test's pause of 3 s is no jump.
+// - kLeastChange: below the test's ratios of 0.8 and 1.25.
+// - kPedalError: below 1.61² = 2.6 of a speed in km/h for mph. Its root, 1.22, bounds the doubtful ratios.
+// Chosen, with a bound from the test:
+// - kLegWay, kLeastSpeed, kLeastAsked: one step of 0.6 s from rest has 0.98 m, 1.6 m/s and 3.2 m/s.
+// - kLeastLegs: 2 to 8. At ratio 5 a car drives 0.6 s with each answer, so that few answers have to do.
+// - kLate: with 0.3 s the changing clock is found too late.
+// - kBurst: above the jitter of 0.3, below 0.76 of the step that had to wait.
+// - kSpeedJump, kMostBraking: a speed that halves from 20 m/s in 0.12 s exceeds both together (5.2 m/s). A
+//   grip of 28 m/s², as indy has, does not within 0.25 s.
+// - kSame: below log 1.25 = 0.22. kLeastCounted: below 1.
+// Chosen, without a bound (a tenth and four times each pass the test):
+// - kLateInFew: 0.6 s in all, less than the 0.96 s by which two answers at ratio 5 exceed the wall's time.
+// - kErrors: 2.7 standard errors of a sum of kLegs legs with late messages, 1.1 of one of independent errors.
+// - kDrives: as in guard_way_back.cpp. kPedalMemory: at pedal kDrives udacity gains 1.6 m/s in it, more than
+//   kLeastAsked.
+// - kSampledSpeed: 8 cm in kSampling, more than the 7 cm of a displacement with noise of 0.05 m.
+// - kJump: four deviations of such a displacement. kClockAcross: a slip of 17°.
+// - kOfStep: as kLeastChange. kFollowed: about 1 / kLegs. kSampledLeft: a memory of 20 answers.
+// - kRest: well below kLeastSpeed.
 constexpr double kFullSize = 4.5;      // [m] length of a full-size car
 constexpr double kLegWay = 0.5;        // [m] least way of a leg
 constexpr double kLeastSpeed = 0.5;    // [m/s] least speed that shows a time
