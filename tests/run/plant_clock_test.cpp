@@ -64,6 +64,17 @@ TEST_F(PlantClockTest, FindsAFastClockByOneStepFromRest) {
   EXPECT_TRUE(clock.is_settled());
 }
 
+TEST_F(PlantClockTest, TakesOneLateMessageBeforeTheStartForNoFastClock) {
+  for (const double late : {0.15, 0.3, 0.6}) {
+    x_ = v_ = wall_ = plant_ = 0.0;
+    PlantClock clock = estimated();
+    advance(clock, 0.12, 0.0);
+    advance(clock, 0.12 + late, 0.0);
+    EXPECT_FALSE(advance(clock, 0.12, 0.12 + late)) << late;
+    for (int i = 0; i < 100; ++i) EXPECT_FALSE(advance(clock, 0.12, 0.12)) << late;
+  }
+}
+
 TEST_F(PlantClockTest, CountsByTheWallWhateverAMachineDelaysAndASensorErrs) {
   for (const bool is_noisy : {false, true}) {
     PlantClock clock = estimated();

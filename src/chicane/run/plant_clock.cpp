@@ -128,7 +128,9 @@ bool PlantClock::advance(Clock::time_point received, const model::Measurement* m
   time_ += time_of(wall, step);
   has_last_ = is_whole;
   if (is_whole) last_ = *measured;
-  return step.steps > 0 && add(step) && take_up();
+  const bool is_new = step.steps > 0 && add(step) && take_up();
+  if (leg_.steps == 0) gap_ = wall;
+  return is_new;
 }
 
 /// Measures each answer by the simulator's own time. True: the time jumped.
@@ -203,8 +205,10 @@ bool PlantClock::add(const Leg& step) {
           leg_.steps == 0 ? step.is_from_rest : leg_.is_from_rest};
   // Longer legs, because fit() leaves out short ones that differ by one of the simulator's own steps.
   if (leg_.way < kLegWay * size_ || leg_.plant < kLegSamples * kSampling) return false;
-  if (leg_.plant > kSlowest * leg_.wall) legs_[count_++ % kLegs] = leg_;
-  const bool is_faster = leg_.is_from_rest && leg_.plant > kFaster * leg_.wall;
+  // A message that came late, while the car stood, shortens the wall's time to the next one.
+  const bool seems_faster = leg_.is_from_rest && leg_.plant > kFaster * leg_.wall;
+  const bool is_faster = seems_faster && leg_.plant > kFaster * gap_;
+  if (leg_.plant > kSlowest * leg_.wall && seems_faster == is_faster) legs_[count_++ % kLegs] = leg_;
   leg_ = {};
   return count_ >= kLeastLegs || (count_ == 1 && is_faster);
 }

@@ -94,6 +94,7 @@ class PlantClock {
   bool is_speed_known_ = false;  ///< the speed has agreed with the clock, or a pedal with the speed
   model::Measurement last_;
   Leg leg_;
+  double gap_ = 0.0;  ///< wall time before the message with which leg_ begins [s]
   std::array<Leg, kLegs> legs_{};
   std::size_t count_ = 0;
   double sampled_ = 0.0;               ///< time counted in addition, for the age of states [s]
