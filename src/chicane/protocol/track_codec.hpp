@@ -102,7 +102,7 @@ inline constexpr TrackFormat kCsvTrack{".csv", &parse_csv_track};
 /// All of them; the first that recognises a text reads it.
 [[nodiscard]] std::span<const TrackFormat> foreign_tracks() noexcept;
 
-/// What roads are read from, for the help.
+/// Files that roads are read from, as the help names them.
 inline constexpr std::string_view kRoadFiles =
     "Map (.yaml with its image), table, cones, JSON, GPX, KML, OSM or OpenDRIVE";
 /// Kind of a road's file, by its content: "occupancy map", "GPX", "cones", "table of points".
