@@ -119,6 +119,7 @@ double PlantClock::at(Clock::time_point wall) const {
 bool PlantClock::advance(Clock::time_point received, const model::Measurement* measured,
                          const model::Command& acting) {
   const double wall = in_seconds(received - wall_);
+  const bool is_first = !has_last_;
   wall_ = received;
   if (options_.is_measured) return follow(measured);
   Leg step;
@@ -129,7 +130,7 @@ bool PlantClock::advance(Clock::time_point received, const model::Measurement* m
   has_last_ = is_whole;
   if (is_whole) last_ = *measured;
   const bool is_new = step.steps > 0 && add(step) && take_up();
-  if (leg_.steps == 0) gap_ = wall;
+  if (leg_.steps == 0) gap_ = is_first ? 0.0 : wall;
   return is_new;
 }
 

@@ -310,7 +310,7 @@ bool Guard::try_reset(const std::optional<StopStart>& start, const Cycle& cycle,
     const double lock = std::copysign(vehicle.steer_limit, -start->e);
     const double kept = std::min(edge, kKeptShare * options_.margin) - kCreepNearer;
     if (!(creeping_edge(filter_.planner(), road_, *start, lock, vehicle) > kept)) {
-      report_.reason = controller::GuardReason::kFacesEdge;
+      if (stands()) report_.reason = controller::GuardReason::kFacesEdge;
       return false;
     }
     const bool has_turned = std::fabs(lock - start->body.steer) < kTurnedWheels * vehicle.steer_limit;

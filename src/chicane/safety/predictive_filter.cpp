@@ -92,7 +92,8 @@ constexpr Law kLaws[] = {{kGentle},
                          {kHard, 3.0, 0.8, 0.6, 2.0},
                          {kHard, 1.0, 0.4, 0.6, 3.0},
                          {kHard, 3.0, 0.8, 0.6, 3.0}};
-/// Driven where no law holds: brakes that let go leave the tyres to the wheel. Chosen.
+/// Driven where no other law holds a car that slides on its road: brakes that let go leave the tyres to the
+/// wheel. A car whose road ends has to brake. Chosen.
 constexpr Law kReleased{{0.3, 3.0}, 2.0, 0.8};
 constexpr int kLawCount = static_cast<int>(std::size(kLaws));
 constexpr int kOffLap = 13;     // of them on a road without a planned lap
@@ -347,7 +348,8 @@ bool PredictiveFilter::drive(const road::KnownRoad& road, const StopStart& start
     lost_ = std::max((goes_on ? 1.0 : kKeptLoss) * lost_, std::min(promised_ - edge, kMostLoss));
   }
   for (int i = 0; i <= kDriven && best.fit < Fit::kOpen; ++i) {
-    if (i == kDriven && best.fit != Fit::kNone) break;
+    const bool slides = best.check.spins_at > 0.0 || best.check.least_edge < 0.0;
+    if (i == kDriven && (best.fit != Fit::kNone || !slides || planner_.edge(road, start) < 0.0)) break;
     const Law& law = i == kDriven ? kReleased : kLaws[i];
     if (is_open && law.braking.share < 1.0) continue;
     const Candidate before = best;

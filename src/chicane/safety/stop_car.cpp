@@ -54,7 +54,8 @@ StopCar::Change StopCar::change(const StopMotion& at) const noexcept {
   const model::BodyMotion<double>& m = at.body;
   const double drag = -longitudinal_acceleration(p, 0.0, m.vx);
   const double pedal = m.acceleration + drag;
-  const double rolling = (p.drag_constant - p.drag_driven) / p.load_constant;
+  const double driven = std::min(p.drag_driven, p.drag_constant);
+  const double rolling = (p.drag_constant - driven) / p.load_constant;
   const double down = 0.5 * (p.load(m.vx) - p.load_constant);
   const double pitch = 0.5 * p.height / p.wheelbase() * at.load_along;
   const double roll = p.height / p.track_width * at.load_across;
@@ -62,7 +63,7 @@ StopCar::Change StopCar::change(const StopMotion& at) const noexcept {
     return model::magic_secant(p.tire_shape, EachWheel(square + kLeastSquare));
   };
   const Wheels& w = wheels_;
-  const EachWheel asked = 0.5 * (pedal * (pedal > 0.0 ? w.drive : w.brake) - p.drag_driven * w.drive);
+  const EachWheel asked = 0.5 * (pedal * (pedal > 0.0 ? w.drive : w.brake) - driven * w.drive);
   const EachWheel moved = max(w.pitches * pitch - w.rolls * roll, (kLeastLoad - 1.0) * w.rest);
   const EachWheel load = w.rest + moved + w.down * down;
   const EachWheel most = p.friction * (1.0 - p.load_sensitivity * moved / w.rest) * load;

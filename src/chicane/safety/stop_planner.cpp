@@ -235,7 +235,7 @@ double StopPlanner::left_sideways(double bend, double turning, double v) const n
 double StopPlanner::braking_share(double sideways, double deceleration, double v) const noexcept {
   const model::VehicleParams& car = model_.vehicle();
   const double grip = friction_ * model_.load(v);
-  const double drag = -longitudinal_acceleration(car, 0.0, v);  // takes nothing of the tyres
+  const double drag = -longitudinal_acceleration(car, 0.0, v);  // as if it took nothing of the tyres
   const auto holds = [&](double a) {
     const double along = std::clamp((a - drag) / grip, 0.0, 1.0);
     const double ellipse = std::sqrt(std::max(1.0 - car.friction_coupling * along * along, 0.0));
