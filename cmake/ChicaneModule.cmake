@@ -11,7 +11,7 @@
 #
 # Most of a small source file's compile time goes into the headers that it includes. UNITY compiles the module's sources as one file,
 # chicane_unity(TARGET GROUP FILE...) some of a target's, and a test BATCH of its sources at a time, without it all at once; so names in
-# their anonymous namespaces must differ. Files that no group of a module names, such as those of a new controller, are compiled alone.
+# their anonymous namespaces must differ. Files that no group of a module names, such as a new controller's, are compiled alone.
 # LIGHT is for what no control step waits for: -O1. Tests have -Og. docs/measured/program.md says what this is good for.
 option(CHICANE_UNITY "Compile groups of sources as one file; OFF, as in the preset dev: each alone" ON)
 

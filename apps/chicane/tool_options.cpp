@@ -14,7 +14,7 @@ namespace chicane::apps {
 namespace {
 
 constexpr int kLongestHorizon =
-    200;  ///< as in bench/problems/structured_solver.hpp, which is not part of this program
+    200;  ///< limit of bench/problems/structured_solver.hpp, which is not part of this program
 
 OptionRow start_row(std::vector<double>& start) {
   const auto take = [&start](const std::string& text) -> std::string {

@@ -98,7 +98,7 @@ std::set<std::string> words_of(const std::string& text, const std::string& word)
   return words;
 }
 
-/// The page of the command line has a row for each command, and names those of chicane-lab.
+/// The page of the command line has a row for each command, and names chicane-lab's.
 TEST(Lab, IsBuiltByRunShForEachOfItsCommands) {
   const std::string page = test::shell("cat docs/reference/cli.md").out;
   const std::size_t begin = page.find("`chicane-lab` does the work of") + 13;

@@ -18,7 +18,7 @@
 namespace chicane::run {
 namespace {
 
-// The course is that of docs/measured/racing.md, "The severe double lane change"; other numbers were chosen.
+// The course stands in docs/measured/racing.md, "The severe double lane change"; other numbers were chosen.
 constexpr double kGap = 1.0;        // [m] between entry and side lane, by the standard
 constexpr double kIntoEntry = 3.0;  // [m] end of the entry lane in which way() turns already
 constexpr double kIntoSide = 5.0;   // [m] both ends of the side lane in which way() still turns

@@ -39,7 +39,7 @@ constexpr double kMostDeviation = 0.1;  // share of the usual deviation: a less 
 
 // Of delay [s], gain, offset [rad] and grip: by how much an estimator differs, what is assumed to be usual
 // (standard deviation), the step in which the car is driven with, and the range. Chosen;
-// docs/identification.md has what is usual.
+// docs/identification.md has the usual values.
 struct Row {
   double change, usual, step, least, most;
 };

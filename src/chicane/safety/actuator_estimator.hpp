@@ -25,7 +25,7 @@ namespace chicane::safety {
 class ActuatorEstimator {
  public:
   // Origins (chosen: by trial, see Guard):
-  // - Derived: kMostDelay (three deviations of what is usual). Chosen: kMemory (docs/identification.md),
+  // - Derived: kMostDelay (three usual deviations). Chosen: kMemory (docs/identification.md),
   //   kEnough.
   static constexpr double kMemory = 10.0;    ///< time constant of forgetting [s]
   static constexpr double kEnough = 5.0;     ///< remembered driving until delay and gain are driven with [s]

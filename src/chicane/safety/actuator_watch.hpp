@@ -73,7 +73,7 @@ class ActuatorWatch {
   /// Updates the estimates with a plausible measurement; `sent`: commands to the actuators. Steering is not
   /// judged while the rear axle slides, brakes while either axle does.
   void see(const model::Measurement& now, const tracking::CommandHistory& sent, const AxleUse& use) noexcept;
-  /// Begins anew with the next measurement, because this cycle has no plausible one.
+  /// Starts again with the next measurement, because this cycle has no plausible one.
   void skip() noexcept { count_ = 0; }
 
   [[nodiscard]] const ActuatorAnswer& answer() const noexcept { return answer_; }
@@ -130,7 +130,7 @@ class ActuatorWatch {
   void judge_braking(double elapsed) noexcept;
 
   model::PredictionModel model_;
-  double pace_;  ///< times and speeds over those of a full-size car: √(length / 4.5 m), at most 1
+  double pace_;  ///< times and speeds over a full-size car's: √(length / 4.5 m), at most 1
   ActuatorAnswer answer_;
   std::array<Sample, kSamples> samples_{};
   AxleUse use_;

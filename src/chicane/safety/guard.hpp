@@ -36,7 +36,7 @@ namespace chicane::safety {
 ///
 ///     1 actuators   takes up what was learned of steering and delay               take_up_actuators
 ///     2 look        gives the plausible part of the measurement to road,          MeasurementMonitor,
-///                   actuators and estimate; starts anew if the car was moved      ResetWatch
+///                   actuators and estimate; starts again if the car was moved     ResetWatch
 ///     3 controller  takes its answer; resets it after a second without one        watch_answer
 ///     4 choose      chooses a command, see below                                  choose
 ///     5 limits      releases the pedals of a stuck car; range, rate, no reverse   free_stuck_car, limited
@@ -97,7 +97,7 @@ class Guard {
   /// Sets the planned lap that the controller races by; null: none. Stops count with the lap's grip, and
   /// follow its line if the lap was planned on the road that the guard knows. Stays when a new run begins.
   void use_line(std::shared_ptr<const road::RacingRoad> lap);
-  /// Changes the parameters of the model. The limits of the sent commands stay those of the constructor.
+  /// Changes the parameters of the model. The sent commands keep the constructor's limits.
   void set_vehicle(const model::VehicleParams& vehicle) noexcept;
 
   /// The stored stop after step(), as commands for the actuators. Begins when the next command would act.

@@ -289,7 +289,7 @@ void Guard::watch_answer(const model::Measurement& seen, bool has_answer) noexce
 
 /// By the estimate the car stands, but it is measured elsewhere: at walking pace, within half a car's length,
 /// it shows whether it answers there. False where it is not tried: ResetWatch does not wait (run_.still
-/// begins anew in each cycle then), or has waited too shortly.
+/// starts again in each cycle then), or has waited too shortly.
 bool Guard::try_reset(const std::optional<StopStart>& start, const Cycle& cycle, double time,
                       controller::StepResult& result) noexcept {
   if (monitor_.findings().late || !(run_.still.lasts(time) > kStillTime)) return false;

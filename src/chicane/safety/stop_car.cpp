@@ -9,7 +9,7 @@ namespace chicane::safety {
 namespace {
 
 // Origins (chosen: by trial, see Guard):
-// - Derived: kLoadLag (bmw-320i's; other plants have 9 to 80 ms), kLocks (those of the plant:
+// - Derived: kLoadLag (bmw-320i's; other plants have 9 to 80 ms), kLocks (the plant's:
 //   sim/double_track.hpp), kMostAlong (a planned lap uses no more, docs/racing.md), kLeastSquare,
 //   kShortestLag (divisors above 0).
 // - Chosen: kRelaxation (docs/guard.md, eq. 3a), kLeastLoad (a wheel that is nearly in the air).

@@ -6,7 +6,7 @@
 namespace chicane::safety {
 namespace {
 
-// Of a car in full size; those of a model car are shorter by the root of its scale. Chosen: a pole of 2.5
+// Of a car in full size; a model car's are shorter by the root of its scale. Chosen: a pole of 2.5
 // 1/s, slower than drive and brakes follow; the speed at which Guard's car stands.
 constexpr double kSpeedTime = 0.4;  // [s] in which the planned speed is met again
 constexpr double kStanding = 0.5;   // [m/s] a plan that ends faster is not complete

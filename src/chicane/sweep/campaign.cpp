@@ -51,7 +51,7 @@ Result<std::vector<sim::Fault>> parts_of(const std::string& names) {
   return parts;
 }
 
-/// Duration of a group's faults [s]; for "own" that of the fault whose kind lasts longest.
+/// Duration of a group's faults [s]; for "own" the longest own duration of its faults.
 double duration_of(const CampaignGroup& group, const std::vector<sim::Fault>& parts) {
   if (group.lasts == kLasts) return run::kLasting;
   if (group.lasts != kOwn) return number_in(group.lasts).value_or(0.0);

@@ -79,7 +79,7 @@ constexpr auto kSobolNumbers = [] {
   return columns;
 }();
 
-/// Pseudo-random number from three arguments. The odd factors are those of SplitMix64 and xxHash64.
+/// Pseudo-random number from three arguments. The odd factors come from SplitMix64 and xxHash64.
 std::uint64_t mixed(std::uint64_t seed, std::uint64_t a, std::uint64_t b) noexcept {
   Random random(seed * 0x9e3779b97f4a7c15ULL ^ (a * 0xc2b2ae3d27d4eb4fULL) ^ (b * 0x165667b19e3779f9ULL));
   static_cast<void>(random.bits());

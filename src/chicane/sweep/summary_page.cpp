@@ -208,7 +208,7 @@ class Page {
            header_.columns.end();
   }
 
-  /// Titles `first`, followed by those of the columns that are kept.
+  /// Titles `first`, then the titles of the kept columns.
   [[nodiscard]] std::vector<std::string> with_columns(std::vector<std::string> first) const {
     for (std::size_t i = 0; i < kShown.size(); ++i)
       if (is_kept(i)) first.emplace_back(kShown[i].title);

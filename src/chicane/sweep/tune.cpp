@@ -232,7 +232,7 @@ class Tuner {
     return verdict.passed == static_cast<int>(trials_.size());
   }
 
-  /// Objective of a verdict, lower is better. Lap and steering are those of the first trial, and the margin
+  /// Objective of a verdict, lower is better. Lap and steering come from the first trial, and the margin
   /// is the least one, so that further trials can only worsen it. The factors were chosen: they bring metres,
   /// rad/s and seconds to one scale. 1000: no lap.
   [[nodiscard]] double objective(const Verdict& verdict) const {
