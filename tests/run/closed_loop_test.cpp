@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 
+#include <tuple>
+
 #include "chicane/run/run_steps.hpp"
 #include "chicane/sim/plant_registry.hpp"
 #include "support/chicane_test.hpp"
@@ -45,6 +47,19 @@ TEST(DefaultPreset, LapsCleanWithJitterOfTheLatency) {
   EXPECT_EQ(test::drive(scenario).state_hash, first.state_hash);
   scenario.seed = 2;
   EXPECT_NE(test::drive(scenario).state_hash, first.state_hash);
+}
+
+/// Commands later than the guard held them at first: the receiver stops the car in between until they are
+/// held longer. A model car's 60 ms are 0.4 s of one in full size.
+TEST(DefaultPreset, DrivesWhereCommandsAreLaterThanTheyWereHeld) {
+  for (const auto& [car, jitter, most] : {std::tuple{"udacity", 0.2, 37.0}, {"orca-1-43", 0.06, 12.5}}) {
+    scenario::Scenario scenario = scenario_of(car, "lakeside", 1);
+    scenario.latency_jitter = jitter;
+    const telemetry::RunSummary summary = test::drive(scenario);
+    EXPECT_EQ(summary.off_track_events, 0) << car;
+    ASSERT_EQ(summary.laps.size(), 1U) << car;
+    EXPECT_LT(summary.laps[0].lap_time, most) << car;
+  }
 }
 
 TEST(LatencyJitter, IsNotTold) {

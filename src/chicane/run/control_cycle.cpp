@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kRoadSpacing = 2.0;  // [m] of the road that the guard knows
 constexpr double kLateMemory = 30.0;  // [s] in which a late command is forgotten
+constexpr double kLatest = 0.75;      // [s] in full size: the guard holds no command longer
 
 }  // namespace
 
@@ -98,12 +99,14 @@ void ControlCycle::step(const CycleInput& input, telemetry::Frame& frame) noexce
   frame.time = frame.measurement.time;
   frame.gate_interval = frame.begins ? 0.0 : input.interval;
   longest_ = std::max(frame.gate_interval, longest_ * (1.0 - frame.gate_interval / kLateMemory));
+  const double time = similarity_.time();
+  if (guard_.is_stopped_by_receiver(similarity_.full_size(frame.measurement), time * longest_))
+    longest_ = std::max(longest_, std::min(longest_ + frame.gate_interval, kLatest / time));
   frame.longest_interval = longest_;
   frame.is_manual = input.manual.has_value();
   if (input.manual) frame.manual = *input.manual;
-  const safety::Guard::Cycle cycle{.interval = similarity_.time() * frame.gate_interval,
-                                   .manual = input.manual,
-                                   .longest = similarity_.time() * longest_};
+  const safety::Guard::Cycle cycle{
+      .interval = time * frame.gate_interval, .manual = input.manual, .longest = time * longest_};
   const Deadline deadline = input.deadline.counted_in(questions);
   if (similarity_.is_identity()) {
     frame.asked = guard_.step(frame.measurement, deadline, cycle, frame.result);

@@ -16,6 +16,8 @@ using controller::Rung;
 // Chosen: 6.4 s are drawn.
 constexpr int kShown = 64;          // points of a backup that is drawn
 constexpr double kShownStep = 0.1;  // [s]
+// Derived: PredictiveFilter adds as much to the longest interval until a stop begins.
+constexpr double kLateness = 0.06;  // [s]
 // Braking of a car that is too fast for a silence: kGentle of the family, gentle and stable without feedback.
 constexpr Braking kHeldBack{0.8, 1.6, 0.7};
 
@@ -94,6 +96,12 @@ void Guard::set_grip(double share) noexcept {
   count_with_actuators();
 }
 
+bool Guard::is_stopped_by_receiver(const model::Measurement& measured, double longest) const noexcept {
+  const double newest = measured.time + std::max(learned_.answer().delay, 0.0);
+  return measured.throttle <= 0.0 &&
+         commanded_.lowest_throttle(measured.time - longest - kLateness, newest) > kDrives;
+}
+
 /// Estimate, stops and fallback count with the car as its actuators answer.
 void Guard::count_with_actuators() noexcept {
   const model::VehicleParams vehicle =
@@ -130,7 +138,7 @@ model::Command Guard::step(const model::Measurement& measured, Deadline deadline
   choose(seen, cycle, result);
   const model::Command asked = result.command;
   if (options_.mode == GuardMode::kOn && !cycle.manual) {
-    free_stuck_car(seen.time, cycle.interval, result);
+    free_stuck_car(seen.time, cycle, result);
     watch_rest(seen.time, result.command.throttle);
     result.command = limited(result.command, cycle.interval);
   }
@@ -294,8 +302,10 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
   if (run_.is_far && !verdict.must_stop) report_.reason = GuardReason::kFarFromRoad;
   if (!start || !drive_backup(*start, result)) fall_back(seen, result);
   // What brakes a car that goes forward may be the reverse gear of one that rolls back.
-  if (direction_.rolls_back() && result.command.throttle < 0.0)
+  if (direction_.rolls_back() && result.command.throttle < 0.0) {
     result.command.throttle = against_rolling_back();
+    filter_.withdraw_stop();
+  }
 }
 
 /// Whether the answer may be sent; slowed down where it leaves only a closed-loop backup.

@@ -87,6 +87,10 @@ class Guard {
   /// the chosen command before the gate limits it.
   model::Command step(const model::Measurement& measured, Deadline deadline, const Cycle& cycle,
                       controller::StepResult& result) noexcept;
+  /// The pedals are released although each command that may act drives, held for `longest` [s]: commands come
+  /// later, and the receiver stops the car in between (docs/guard.md, "The condition for sending").
+  [[nodiscard]] bool is_stopped_by_receiver(const model::Measurement& measured,
+                                            double longest) const noexcept;
   /// Decision of the last step(), with its reason.
   [[nodiscard]] const GuardReport& report() const noexcept { return report_; }
   /// Begins a new run: guard and controller forget everything that they learned, except a line of use_line().
@@ -108,6 +112,7 @@ class Guard {
 
  private:
   static constexpr double kStandingSpeed = 0.5;  ///< [m/s] a slower car stands; chosen
+  static constexpr double kDrives = 0.1;         ///< pedal from which on a car should move; chosen
   static constexpr double kStuckTime = 3.0;      ///< [s] docs/safety.md, condition "stuck"
   static constexpr double kAskPause = 4.0;       ///< [s] between first and second trial (docs/safety.md)
   static constexpr double kGuessedWidth = 1.0;   ///< [m] error allowed of an assumed half width; chosen
@@ -150,7 +155,7 @@ class Guard {
   [[nodiscard]] bool turns_as_asked(double time, const model::State& car) noexcept;
   [[nodiscard]] double against_rolling_back() const noexcept;
   void watch_rest(double time, double throttle) noexcept;
-  void free_stuck_car(double time, double interval, controller::StepResult& result) noexcept;
+  void free_stuck_car(double time, const Cycle& cycle, controller::StepResult& result) noexcept;
 
   // The trial of a car that was put elsewhere, or whose controller has no answer.
   void watch_for_reset(const model::Measurement& measured) noexcept;

@@ -150,7 +150,7 @@ using controller::Rung;
 // - Chosen, docs/safety.md: kLost, kAlong, kReleaseTime, kStillTime, kTrialWay, kTrialRoom, kMostAside,
 //   kNoAnswerTime.
 // - Chosen: kChord, kAlongWaypoints (waypoints 10 m apart in a bend of 18 m); for what their lines say:
-//   kAtRest, kRestTime, kRefusedTime, kDrives, kGain, kMostAgainstRolling, kTrialPedal, kStillCreeps,
+//   kAtRest, kRestTime, kRefusedTime, kGain, kMostAgainstRolling, kTrialPedal, kStillCreeps,
 //   kCreepStep, kTurnedWheels.
 constexpr double kAtRest = 0.05;       // [m/s]
 constexpr double kRestTime = 0.3;      // [s] below it after which a car is at rest
@@ -160,7 +160,6 @@ constexpr double kAcross = 0.8;        // [rad] off the road's direction the car
 constexpr double kAlong = 0.2;         // [rad] within which it is along it again
 constexpr double kRefusedTime = 1.0;   // [s] of refused commands after which a standing car is led back
 constexpr double kReleaseTime = 0.5;   // [s] a car that should move may stand before its brake is released
-constexpr double kDrives = 0.1;        // pedal from which on a car should move
 constexpr double kGain = 0.1;          // [m/s] by which a car gains speed that nothing holds
 constexpr double kMostAgainstRolling = 0.7;  // pedal against rolling back
 constexpr double kStillTime = 1.0;   // [s] a car stands before it is tried whether it was put elsewhere
@@ -469,7 +468,7 @@ void Guard::watch_rest(double time, double throttle) noexcept {
 /// A car that should move and stands is stuck after kStuckTime, where nothing worse is said of it. Its pedals
 /// are released for a cycle now and then: a brake that stays on lets go then. It holds a slow car, too, that
 /// gains no speed by its drive.
-void Guard::free_stuck_car(double time, double interval, controller::StepResult& result) noexcept {
+void Guard::free_stuck_car(double time, const Cycle& cycle, controller::StepResult& result) noexcept {
   model::Command& command = result.command;
   const model::VehicleParams& car = model_.vehicle();
   const double speed = std::fabs(estimator_.state().vx);
@@ -485,7 +484,8 @@ void Guard::free_stuck_car(double time, double interval, controller::StepResult&
   const bool has_worse = controller::word_of(reason).severity == Severity::kError;
   if (stands && run_.stuck.lasts(time) > kStuckTime && !has_worse) reason = controller::GuardReason::kStuck;
   // Between two releases there is a cycle in which the car is driven.
-  const double pause = std::max(car.latches_brakes() ? kReleaseTime : kStuckTime, 1.5 * interval);
+  const double pause = std::max(car.latches_brakes() ? kReleaseTime : kStuckTime,
+                                1.5 * std::max(cycle.interval, cycle.longest));
   if (!(run_.released.lasts(time) > pause)) return;
   command.throttle = car.latches_brakes() ? car.brake_release_throttle : 0.0;
   run_.released.at = time;

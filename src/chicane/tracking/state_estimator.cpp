@@ -26,6 +26,13 @@ model::Command CommandHistory::at(double time) const noexcept {
   return {};
 }
 
+double CommandHistory::lowest_throttle(double from, double until) const noexcept {
+  double lowest = at(from).throttle;
+  for (int i = 0; i < count_; ++i)
+    if (entry(i).time > from && entry(i).time <= until) lowest = std::min(lowest, entry(i).command.throttle);
+  return lowest;
+}
+
 double CommandHistory::next_change(double time, double limit) const noexcept {
   for (int i = 0; i < count_; ++i) {
     if (entry(i).time > time) return std::min(entry(i).time, limit);

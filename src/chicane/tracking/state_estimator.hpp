@@ -32,6 +32,8 @@ class CommandHistory {
   }
   /// The command acting at `time`; zero before the first.
   [[nodiscard]] model::Command at(double time) const noexcept;
+  /// Lowest throttle of those that act between two times [s].
+  [[nodiscard]] double lowest_throttle(double from, double until) const noexcept;
   /// Time of the first change of command after `time`, at most `limit` [s].
   [[nodiscard]] double next_change(double time, double limit) const noexcept;
 
