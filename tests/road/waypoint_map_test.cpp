@@ -33,6 +33,18 @@ TEST(WaypointMap, StartsAnewOnAnotherRoad) {
   EXPECT_EQ(map.points().front().x(), 1150.0);
 }
 
+TEST(WaypointMap, StartsAnewBeforeItsFirstWaypointUntilItIsClosed) {
+  WaypointMap map;
+  const std::vector<Vec2> points = stadium();
+  (void)map.add(seeing(points, 3));
+  EXPECT_FALSE(map.add(seeing(points, 2))) << "a noisy place";
+  EXPECT_TRUE(map.add(seeing(points, 1))) << "the car rolled back";
+  EXPECT_EQ(map.points().front(), points[1]);
+  for (int i = 1; i < 57; ++i) (void)map.add(seeing(points, i));
+  ASSERT_TRUE(map.is_closed());
+  EXPECT_FALSE(map.add(seeing(points, 0)));
+}
+
 TEST(WaypointMap, IgnoresWaypointsThatAreNotNumbersAndKeepsWithinItsMemory) {
   WaypointMap map;
   model::Measurement now = seeing(stadium(), 0);

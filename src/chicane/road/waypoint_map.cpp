@@ -59,13 +59,17 @@ bool WaypointMap::add(const model::Measurement& now) noexcept {
   const int count = std::clamp(now.waypoint_count, 0, model::Measurement::kMaxWaypoints);
   int known = -1;  // index in the map of waypoint `first` of the measurement
   int first = 0;
+  int before = 0;  // waypoints in front of it that the map does not have
   for (; first < count && known < 0; ++first) {
     const Vec2& p = now.waypoints[static_cast<std::size_t>(first)];
-    if (is_finite(p)) known = find(p);
+    if (!is_finite(p)) continue;
+    known = find(p);
+    before += known < 0 ? 1 : 0;
   }
   bool changed = false;
   const bool is_full = !is_closed_ && static_cast<int>(points_.size()) + count > kCapacity;
-  if (known < 0 || is_full) {
+  const bool begins_ahead = !is_closed_ && known == 0 && before > 1;  // one: a noisy place at the start
+  if (known < 0 || is_full || begins_ahead) {
     if (count < 2) return false;
     known = -1;
     clear();

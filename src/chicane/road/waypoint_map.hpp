@@ -17,8 +17,8 @@ namespace chicane::road {
 /// one.
 ///
 /// Memory for kCapacity waypoints is reserved at construction; add() allocates nothing. A measurement whose
-/// waypoints match nothing known starts a new map (another scene, or a car that was moved), and so does one
-/// that no longer fits.
+/// waypoints match nothing known starts a new map (another scene, or a car that was moved), and so do one
+/// that no longer fits and, before the map is closed, one from two waypoints before its first.
 class WaypointMap {
  public:
   static constexpr int kCapacity = 4096;

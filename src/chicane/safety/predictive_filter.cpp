@@ -233,7 +233,7 @@ double PredictiveFilter::slip(const StopStart& at) const noexcept {
 /// Whether there is a stop after the command also if it is held as usual, and if it begins late: on a link
 /// whose commands are sometimes much later than usual, wheels that stay turned lead elsewhere. Stores none.
 bool PredictiveFilter::holds_as_usual(const Request& request, double longest, GuardReport& report) noexcept {
-  if (!(usual_ > 0.0) || !(longest > usual_ + kLateness) || request.road.is_raced()) return true;
+  if (!(usual_ > 0.0) || !(longest > usual_ + kLateness)) return true;
   const Policy before = stored_;
   const bool had_stored = has_stored_;
   const double usual = std::max(usual_, kShortestHold);
