@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `chicane drive` and `chicane limit`: a run with our simulator, live or fast, and the limit of a plant.
+// `chicane drive`, a run of controller and simulator, live or fast; and `chicane limit`, the limit of a
+// plant.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -26,7 +27,7 @@
 namespace chicane::apps {
 namespace {
 
-/// Whether a run with a dashboard continues until it is stopped: no number of laps is given.
+/// Whether a run may continue until it is stopped: it has a dashboard, and no number of laps is given.
 bool may_stay(const Options& options) {
   return !has_setting(options, "laps") && !options.is_fast && !options.is_json;
 }
@@ -34,19 +35,20 @@ bool may_stay(const Options& options) {
 /// Whether a person watches the terminal and can end the program.
 bool is_watched() { return isatty(STDOUT_FILENO) == 1 && isatty(STDERR_FILENO) == 1; }
 
-/// Command by which the program was started, for the page: run.sh sets it.
+/// Asset of the page with the command that starts the program; run.sh sets it.
 net::Asset command_name() {
   const char* const name = std::getenv("CHICANE_COMMAND");
   return {"/command.txt", "text/plain; charset=utf-8", name == nullptr ? "chicane" : name};
 }
 
-/// The results of a run, which are printed even when its recording failed.
+/// Results of a run; they are printed even if the recording failed.
 struct Outcome {
   telemetry::RunSummary summary;
-  Result<void> kept;
-  bool was_stopped;  ///< the run had no end of its own, or stayed at it
+  Result<void> kept;  ///< error of recording or report
+  bool was_stopped;   ///< ended by the user, not by its laps
 };
 
+/// Drives by the clock, with a dashboard.
 Result<Outcome> run_live(const Options& options, std::unique_ptr<run::ClosedLoop> loop,
                          net::ServerOptions server, run::RunControls& controls) {
   const bool drives_on = loop->scenario().laps == 0 && may_stay(options);
@@ -72,11 +74,13 @@ Result<Outcome> run_live(const Options& options, std::unique_ptr<run::ClosedLoop
   return Outcome{std::move(summary), (*kept)->finish(), stays};
 }
 
+// Reasons why a run has no limit. A recording has kNotLookedFor, because its reader can no longer give
+// options.
 constexpr const char* kNotAsked = "not asked for (--limit)";
 constexpr const char* kModelCar = "it is computed for cars in full size";
-/// Reason in a recording whose reader can no longer give options to this run.
 constexpr const char* kNotLookedFor = "this run was driven without looking for it";
 
+/// Limit for the summary of a run, or the reason why there is none.
 lap_time::LimitAnswer answer_of(const road::Track& track, const lap_time::PlantLimit& limit) {
   if (!limit.is_whole())
     return {.why_not = limit.is_cut_short
@@ -85,7 +89,7 @@ lap_time::LimitAnswer answer_of(const road::Track& track, const lap_time::PlantL
   return {.found = std::make_shared<const lap_time::Limit>(lap_time::bound_from_start(track, limit))};
 }
 
-/// The limit that was asked for, and the laps that explain the gap to it where these were.
+/// Limit for --limit, with the laps for --explain.
 Result<lap_time::LimitAnswer> asked_limit(const Options& options, const run::ClosedLoop& loop,
                                           const run::RunControls& controls) {
   const bool is_model = loop.scenario().vehicle.scale != 1.0;
@@ -103,6 +107,7 @@ Result<lap_time::LimitAnswer> asked_limit(const Options& options, const run::Clo
   return limit;
 }
 
+/// Drives as fast as possible, without a dashboard.
 Result<Outcome> run_fast(const Options& options, run::ClosedLoop& loop, const run::RunControls& controls) {
   Result<lap_time::LimitAnswer> asked = asked_limit(options, loop, controls);
   if (!asked) return fail(asked.error());
@@ -126,7 +131,7 @@ Result<Outcome> run_fast(const Options& options, run::ClosedLoop& loop, const ru
                               .on_change = [&](const telemetry::Change& change) { (*kept)->record(change); }},
                              [&] { return controls.wants_stop.load(); });
   }
-  // The gap to a cached limit is for people: JSON and recordings must not depend on a cache.
+  // A limit from the cache is for people: JSON and recordings must not depend on a cache.
   const bool may_know = !options.wants_limit && !options.is_json;
   if (const auto known = may_know ? run::known_limit(loop.scenario(), loop.track()) : std::nullopt)
     limit = answer_of(loop.track(), *known);
@@ -136,7 +141,7 @@ Result<Outcome> run_fast(const Options& options, run::ClosedLoop& loop, const ru
   return Outcome{std::move(summary), (*kept)->finish(), false};
 }
 
-/// The run with its planned lap, shown while it is planned.
+/// Makes the run with its planned lap, and shows the progress of the plan.
 Result<std::unique_ptr<run::ClosedLoop>> planned(const scenario::Scenario& scenario,
                                                  std::optional<net::ServerOptions>* server) {
   PlanWait wait(scenario, server);
@@ -145,6 +150,7 @@ Result<std::unique_ptr<run::ClosedLoop>> planned(const scenario::Scenario& scena
   return loop;
 }
 
+/// Runs `chicane drive` up to its results.
 Result<Outcome> run(const Options& options) {
   static run::RunControls controls;  // static: must outlive the last signal
   catch_interrupts(controls.wants_stop);
@@ -184,6 +190,7 @@ ExitCode drive(const Options& options) {
 
 namespace {
 
+/// Runs `chicane limit`.
 Result<void> print_limit(const Options& options) {
   static std::atomic<bool> wants_stop{false};  // static: must outlive the last signal
   catch_interrupts(wants_stop);

@@ -27,13 +27,15 @@ namespace {
 using protocol::Parameter;
 using protocol::Shelf;
 
-/// A meaning behind `begin`: one line for programs, lines of 80 columns on a terminal. `columns`: of `begin`.
+/// Prints `begin` and a meaning: in one line for programs, in lines of 80 columns on a terminal. `columns`:
+/// width of `begin`.
 void print_entry(std::string_view begin, std::string_view meaning, std::size_t columns) {
-  constexpr std::size_t kWide = 40;  // columns before a meaning beyond which it moves to the next line
+  constexpr std::size_t kWide = 40;  // width of `begin` from which on the meaning is on the next line; chosen
   fmt::print("{}", begin);
   print_sentence(stdout, meaning, columns > kWide ? 4 : columns, columns);
 }
 
+/// Files on a shelf.
 template <Shelf shelf>
 std::vector<ListEntry> files() {
   std::vector<ListEntry> found;
@@ -42,7 +44,7 @@ std::vector<ListEntry> files() {
   return found;
 }
 
-/// Kinds that have a name and a meaning.
+/// Entries of a registry whose kinds have a name and a meaning.
 template <class Kinds>
 std::vector<ListEntry> named(const Kinds& kinds) {
   std::vector<ListEntry> found;
@@ -50,6 +52,7 @@ std::vector<ListEntry> named(const Kinds& kinds) {
   return found;
 }
 
+/// Settings of the schema.
 std::vector<ListEntry> parameters() {
   std::vector<ListEntry> found;
   for (const Parameter& parameter : protocol::list())
@@ -57,11 +60,12 @@ std::vector<ListEntry> parameters() {
   return found;
 }
 
+/// Prints names with their meanings.
 void print_names(const std::vector<ListEntry>& entries) {
   for (const ListEntry& entry : entries) print_entry(fmt::format("{:<18} ", entry.name), entry.meaning, 19);
 }
 
-/// The table of cars in docs/reference/shipped.md.
+/// Prints the cars; as Markdown the table of docs/reference/shipped.md.
 void print_cars(bool is_markdown) {
   if (!is_markdown) return print_names(files<Shelf::kCar>());
   fmt::print(
@@ -85,10 +89,12 @@ void print_cars(bool is_markdown) {
   }
 }
 
+/// Default of a setting as text.
 std::string default_of(const Parameter& parameter) {
   return protocol::get_text(scenario::Scenario{}, parameter);
 }
 
+/// Allowed values of a setting as text.
 std::string range_of(const Parameter& parameter) {
   switch (parameter.option.kind) {
     case protocol::Kind::kChoice:
@@ -105,6 +111,7 @@ std::string range_of(const Parameter& parameter) {
                      parameter.option.may_be_infinite ? ", inf" : "");
 }
 
+/// Prints a line for each setting.
 void print_rows() {
   for (const Parameter& parameter : protocol::list()) {
     print_entry(fmt::format("{:<42} {:<14} {:<13} ", parameter.key, default_of(parameter),
@@ -113,7 +120,7 @@ void print_rows() {
   }
 }
 
-/// docs/reference/configuration.md.
+/// Prints docs/reference/configuration.md.
 void print_page() {
   fmt::print(
       "# Configuration\n\n"
@@ -137,10 +144,12 @@ void print_page() {
   }
 }
 
+/// Default strength of a fault; empty for a fault without strength.
 std::string strength_of(const sim::FaultKind& kind) {
   return kind.strength_meaning.empty() ? "" : fmt::format("{}", kind.strength);
 }
 
+/// Prints the faults; as Markdown the table of docs/reference/shipped.md.
 void print_faults(bool is_markdown) {
   if (is_markdown)
     fmt::print(
@@ -160,18 +169,22 @@ void print_faults(bool is_markdown) {
   }
 }
 
+/// Prints the settings.
 void print_parameters(bool is_markdown) { is_markdown ? print_page() : print_rows(); }
 
+/// Shelf of `chicane list`.
 struct List {
   std::string_view name;
   std::vector<ListEntry> (*entries)();
-  void (*print)(bool is_markdown) = nullptr;  ///< null: names and meanings
-  bool is_in_overview = true;
-  Result<void> (*check)() = [] { return Result<void>(); };
+  void (*print)(bool is_markdown) = nullptr;                ///< null: prints names and meanings
+  bool is_in_overview = true;                               ///< shown by `chicane list` without a shelf
+  Result<void> (*check)() = [] { return Result<void>(); };  ///< error if the shelf cannot be read
 
+  /// Prints the shelf.
   void show(bool is_markdown) const { print != nullptr ? print(is_markdown) : print_names(entries()); }
 };
 
+/// Shelf of files.
 template <Shelf shelf>
 constexpr List list_of(std::string_view name, void (*print)(bool) = nullptr) {
   return {name, files<shelf>, print, true, [] { return protocol::check_shelf(shelf); }};
@@ -217,13 +230,13 @@ ExitCode list(const Options& options) {
 
 namespace {
 
-/// Length as text, with a digit more on roads of model scale.
+/// Length in metres as text, with a digit more for roads of model cars.
 std::string metres(double length) { return fmt::format("{:.{}f}", length, length < 3.0 ? 2 : 1); }
 
-/// The road in words, as the run has it.
+/// Road of a run in words.
 std::string road_in_words(const road::Track& track) {
   const double length = track.centre().length();
-  const double step = std::min(1.0, length / 1000.0);
+  const double step = std::min(1.0, length / 1000.0);  // [m] between samples; chosen
   double narrowest = 1e9;
   double sharpest = 0.0;
   for (double s = 0.0; s < length; s += step) {
@@ -241,8 +254,8 @@ std::string road_in_words(const road::Track& track) {
   return text;
 }
 
-/// Whether a file is a car: it has a plant and no key that a car file may not have. Every other file is a
-/// scenario.
+/// Whether a file is a car: it has a plant, and only keys that a car file may have. Any other file is a
+/// preset or scenario.
 bool is_car(const protocol::Document& document, const std::string& file) {
   const auto& settings = document.assignments;
   const bool has_plant =
@@ -251,7 +264,7 @@ bool is_car(const protocol::Document& document, const std::string& file) {
   return has_plant && !document.preset && protocol::compose({"", {{"car", file}}}).has_value();
 }
 
-/// Adds the file to the request. Its kind in words; of a track nothing yet.
+/// Adds a file to the request. Returns its kind in words; an empty text for a track.
 Result<std::string> add_file(const std::string& file, protocol::Request& request) {
   if (protocol::track_format_of(file) != nullptr) {
     request.settings.emplace_back("track", file);
@@ -265,16 +278,18 @@ Result<std::string> add_file(const std::string& file, protocol::Request& request
   }
   const Result<protocol::Document> document = protocol::parse_document(*text, file);
   if (!document) return fail(document.error());
-  const bool car = is_car(*document, file);
-  if (car) {
+  const bool holds_car = is_car(*document, file);
+  if (holds_car) {
     request.settings.emplace_back("car", file);
   } else {
     request.scenario_file = file;
   }
-  return fmt::format("{}, {} settings", car ? "car" : "preset or scenario", document->assignments.size());
+  return fmt::format("{}, {} settings", holds_car ? "car" : "preset or scenario",
+                     document->assignments.size());
 }
 
-/// Judges one file together with the settings of the command line, as `drive` does.
+/// Checks one file together with the settings of the command line, as `drive` does. Returns what it is, in
+/// words.
 Result<std::string> check_file(const std::string& file, protocol::Request request) {
   Result<std::string> found = add_file(file, request);
   if (!found) return found;
@@ -287,6 +302,7 @@ Result<std::string> check_file(const std::string& file, protocol::Request reques
   return found->empty() ? road_in_words((*run)->track()) : found;
 }
 
+/// Checks the settings of the command line alone.
 ExitCode check_experiment(const protocol::Request& request) {
   if (request.settings.empty() && request.speed_mps.empty() && request.faults.empty())
     return report({ErrorCode::kInvalidArgument, "check: got nothing, expected files or settings"});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `chicane manual` and `chicane completion`: the manual page, and the words that may follow on a
-// command line, from the same rows of options that the command line is read by.
+// `chicane manual` and `chicane completion`: the manual page, and the words that may follow on a command
+// line. Both are made of the rows of options by which the command line is read.
 #include <fmt/format.h>
 
 #include <string>
@@ -27,6 +27,7 @@ std::string plain(std::string_view text) {
   return result.starts_with('.') || result.starts_with('\'') ? "\\&" + result : result;
 }
 
+/// Synopsis of a command, as roff.
 std::string synopsis(const Command& command, const Rows& rows) {
   std::string line = fmt::format(".B chicane {}\n", plain(command.name));
   std::string positionals;
@@ -40,6 +41,7 @@ std::string synopsis(const Command& command, const Rows& rows) {
   return line + (has_options ? "[\\fIOPTION\\fR]...\n" : "") + positionals;
 }
 
+/// Entry of an option, as roff.
 std::string manual_entry(const OptionRow& row) {
   std::string names;
   for (const std::string& name : row.typed_names())
@@ -48,6 +50,7 @@ std::string manual_entry(const OptionRow& row) {
   return fmt::format(".TP\n{}\n{}.\n", names, plain(row.meaning + notes(row)));
 }
 
+/// Sections after the commands.
 constexpr std::string_view kTail = R"(.SH EXIT STATUS
 .TP
 .B 0
@@ -104,11 +107,12 @@ ExitCode manual(const Options&) {
 
 namespace {
 
-/// Line of a word that may follow, and its meaning.
+/// Line of a candidate: a word that may follow, and its meaning.
 std::string candidate(std::string_view word, std::string_view meaning) {
   return fmt::format("{}\t{}\n", word, meaning);
 }
 
+/// Candidates for the value of an option.
 std::string values_of(const OptionRow& row) {
   std::string lines;
   for (const std::string& word : row.rule.words) lines += candidate(word, "");
@@ -121,8 +125,8 @@ std::string values_of(const OptionRow& row) {
   return lines;
 }
 
-/// Lines of the words that may follow a command line. A word that ends with "=" wants more, "/" stands for
-/// the names of files.
+/// Candidates after a command line. A word that ends with "=" is followed by a value; "/" stands for the
+/// names of files.
 std::string candidates(const std::vector<std::string>& line) {
   std::string lines = candidate("--help", "Print this help and end");
   if (line.size() == 1) {
@@ -143,6 +147,7 @@ std::string candidates(const std::vector<std::string>& line) {
   return lines;
 }
 
+/// Scripts of the shells, which call `chicane completion SHELL -- WORDS` for the candidates.
 constexpr std::string_view kBash = R"(# bash completion for chicane, made by `chicane completion bash`.
 _chicane() {
   local word meaning current=${COMP_WORDS[COMP_CWORD]}

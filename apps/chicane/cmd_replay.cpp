@@ -34,15 +34,19 @@ namespace {
 
 using protocol::Json;
 
-// JSON of --json, whose keys are a contract (docs/viewer.md#recordings), and texts for people.
+// Results as JSON, whose keys are a contract (docs/viewer.md#recordings), and as text.
 
+/// Number of a control cycle; null if there is none.
 Json cycle(const std::optional<std::uint64_t>& number) { return number ? Json(*number) : Json(nullptr); }
+/// Number; null if it is not known.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
+/// JSON as printed.
 std::string dump(const Json& object) {
   return protocol::json_text(object, protocol::JsonLayout::kIndented) + "\n";
 }
 
+/// JSON of the recorded run, or of its branch.
 Json json_of(const recording::Future& future) {
   return {{"duration_s", number(future.duration)},
           {"lap_times_s", future.lap_times},
@@ -58,6 +62,7 @@ std::string number_cell(double value) {
   return std::isfinite(value) ? fmt::format("{:12.2f}", value) : fmt::format("{:>12}", "-");
 }
 
+/// Result of --verify as JSON.
 std::string to_json(const recording::ReplayReport& report) {
   return dump({{"recorded_by", report.recorded_by},
                {"controller", report.controller},
@@ -73,6 +78,7 @@ std::string to_json(const recording::ReplayReport& report) {
                {"closed", report.is_complete}});
 }
 
+/// Result of --verify as text.
 std::string to_text(const recording::ReplayReport& report) {
   const double share =
       report.steps == 0 ? 0.0
@@ -93,6 +99,7 @@ std::string to_text(const recording::ReplayReport& report) {
   return text;
 }
 
+/// Result of --branch-at as JSON.
 std::string to_json(const recording::BranchReport& report) {
   return dump({{"branch_at_s", report.at},
                {"cycle", report.cycle},
@@ -103,7 +110,8 @@ std::string to_json(const recording::BranchReport& report) {
                {"branch", json_of(report.branched)}});
 }
 
-/// Table of the recorded run beside its branch with `settings`: a name and two numbers in each row.
+/// Result of --branch-at as text: a table of the recorded run beside its branch. `settings`: changes of the
+/// branch.
 std::string to_text(const recording::BranchReport& report,
                     const std::vector<std::pair<std::string, std::string>>& settings) {
   std::string changes;
@@ -137,6 +145,7 @@ std::string to_text(const recording::BranchReport& report,
   return text;
 }
 
+/// Name of a recording on the page.
 std::string name_of(const std::string& log) { return std::filesystem::path(log).filename().string(); }
 
 /// Recordings of the page, each in a form that browsers read.
@@ -155,8 +164,9 @@ class ShownLogs {
                      scenario ? protocol::schema_json(*scenario, *scenario, &protocol::is_live, {}) : ""});
     return {};
   }
+  /// All recordings.
   [[nodiscard]] const std::vector<live::ServedLog>& logs() const { return logs_; }
-  /// Branches one of the recordings; messages have its name in place of the file.
+  /// Branches a recording. Messages have its name in place of the file.
   [[nodiscard]] Result<recording::BranchReport> branch(const live::WhatIfQuestion& question,
                                                        const recording::BranchHooks& hooks) const {
     if (question.log >= logs_.size())
@@ -173,14 +183,14 @@ class ShownLogs {
   }
 
  private:
-  /// The file itself, or a conversion of a log of another program.
+  /// File of a recording: itself, or a conversion of a log of another program.
   Result<std::string> as_mcap(const std::string& file) {
     if (convert_ == nullptr || !recording::is_foreign_log(file)) return file;
     const std::string& copy = copies_.emplace_back(".mcap").path();
     const Result<void> made = convert_(file, options_, copy);
     return made ? Result<std::string>(copy) : fail(made.error());
   }
-  /// The file itself, or a copy if it is compressed, damaged, or without an index as of a killed writer.
+  /// File that browsers read: itself, or a copy if the recording is compressed, damaged, or without an index.
   Result<std::string> readable_form(const std::string& file) {
     const Result<telemetry::McapReport> read = recording::check_recording(file);
     if (!read) return fail(read.error());
@@ -193,8 +203,8 @@ class ShownLogs {
   }
 
   const Options& options_;
-  LogConverter convert_;
-  std::list<recording::TemporaryFile> copies_;
+  LogConverter convert_;                        ///< null: no file is a log of another program
+  std::list<recording::TemporaryFile> copies_;  ///< files that exist as long as the page
   std::vector<live::ServedLog> logs_;
 };
 
@@ -227,14 +237,16 @@ class BranchRecorder {
  public:
   explicit BranchRecorder(std::string file) : file_{std::move(file)} {}
 
+  /// Hooks for recording::branch_recording(), valid as long as this.
   recording::BranchHooks hooks() {
     return {.on_begin = [this](const run::ClosedLoop& loop) { return begin(loop); },
             .on_change = [this](const telemetry::Change& change) { recorder_->record(change); },
             .on_frame = [this](const telemetry::Frame& frame) { recorder_->record(frame); },
             .on_lap = [this](const telemetry::CompletedLap& lap) { recorder_->record(lap); }};
   }
-  /// Whether the file has been begun: it holds nothing but this branch.
+  /// Whether the file was begun.
   [[nodiscard]] bool has_file() const { return recorder_ != nullptr; }
+  /// Closes the file.
   Result<void> finish() {
     if (recorder_ == nullptr) return {};
     const Result<recording::RecorderReport> report = recorder_->finish();
@@ -242,6 +254,7 @@ class BranchRecorder {
   }
 
  private:
+  /// Begins the file; in a run that changes, records the new run.
   Result<void> begin(const run::ClosedLoop& loop) {
     if (recorder_) {
       recorder_->record(std::make_unique<const recording::RecordedRun>(
@@ -272,6 +285,7 @@ Result<void> show_branch(const Options& options, const std::string& branch_file,
   return show(options, shown, at);
 }
 
+/// Runs `chicane replay --branch-at`.
 Result<ExitCode> branch(const Options& options) {
   const std::string& log = options.log_files.front();
   if (options.log_files.size() > 1)
@@ -300,6 +314,7 @@ Result<ExitCode> branch(const Options& options) {
   return report->first_difference ? kRunFailed : kSuccess;
 }
 
+/// Runs `chicane replay --verify`.
 Result<ExitCode> verify(const Options& options) {
   bool is_verified = true;
   for (const std::string& log : options.log_files) {
@@ -311,6 +326,7 @@ Result<ExitCode> verify(const Options& options) {
   return is_verified ? kSuccess : kRunFailed;
 }
 
+/// Runs `chicane replay` without these options.
 Result<ExitCode> show_logs(const Options& options, LogConverter convert) {
   if (!has_page(options))
     return fail(ErrorCode::kInvalidArgument, "replay: got nothing to do, expected --verify or --branch-at");
@@ -321,6 +337,7 @@ Result<ExitCode> show_logs(const Options& options, LogConverter convert) {
   return kSuccess;
 }
 
+/// Whether the command shows logs of other programs, which chicane-lab reads.
 bool shows_foreign_logs(const Options& options) {
   return !options.wants_verification && !options.branch_at &&
          std::any_of(options.log_files.begin(), options.log_files.end(), recording::is_foreign_log);

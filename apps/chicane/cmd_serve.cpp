@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Commands whose other end is another program: `serve` drives its car, `simulate` is the car it drives.
+// `chicane serve`, which drives the car of another program, and `chicane simulate`, whose car another program
+// drives.
 #include "cmd_serve.hpp"
 
 #include <fmt/format.h>
@@ -21,7 +22,7 @@
 namespace chicane::apps {
 namespace {
 
-/// Description of a run on our road, in our car, whose controller is another program.
+/// Description of a run whose controller is another program.
 protocol::Run description_of_external(const scenario::Scenario& scenario, const road::Track& track) {
   protocol::Run run;
   run.controller = run.preset = "external";
@@ -32,6 +33,38 @@ protocol::Run description_of_external(const scenario::Scenario& scenario, const 
   return run;
 }
 
+/// Runs `chicane serve` up to its results.
+Result<wire::ServeSummary> serve_until_stopped(const Options& options) {
+  static std::atomic<bool> stop{false};  // static: must outlive the last signal
+  let_interrupts_end();
+  Result<scenario::Scenario> scenario = experiment(options);
+  if (!scenario) return fail(scenario.error());
+  Result<std::optional<road::Track>> track = given_track(options, *scenario);
+  if (!track) return fail(track.error());
+  return drive_external_car(
+      options, std::move(*scenario), std::move(*track),
+      [](std::uint16_t port) { return fmt::format("a simulator on port {}", port); }, stop,
+      [&options](wire::ServeOptions serving, auto&&... rest) {
+        serving.clock.lock_step = 1e-3 * options.lock_step_ms;
+        serving.time_field = options.sim_time;
+        return wire::serve(serving, std::forward<decltype(rest)>(rest)...);
+      });
+}
+
+/// Runs `chicane simulate` up to its results.
+Result<wire::SimulateReport> connect_and_drive(const Options& options) {
+  static std::atomic<bool> stop{false};  // static: must outlive the last signal
+  catch_interrupts(stop);
+  wire::SimulateOptions simulating;
+  simulating.url = options.connect;
+  simulating.server_command = options.server;
+  return drive_by_external(
+      options, {}, stop,
+      [&](const scenario::Scenario& scenario, const road::Track&, const wire::SimulateHooks& hooks) {
+        return wire::simulate(simulating, scenario, hooks, stop);
+      });
+}
+
 }  // namespace
 
 Result<wire::ServeSummary> drive_external_car(const Options& options, scenario::Scenario scenario,
@@ -40,7 +73,7 @@ Result<wire::ServeSummary> drive_external_car(const Options& options, scenario::
                                               std::atomic<bool>& stop, const live::ServeFunction& serve) {
   Result<std::unique_ptr<controller::Controller>> controller = run::make_controller(scenario);
   if (!controller) return fail(controller.error());
-  // The recording says from where the guard knows the road, so that a replay computes the same.
+  // The recording has the source of the guard's road, so that a replay computes the same.
   if (!track) scenario.guard.road = safety::GuardRoad::kWaypoints;
   const Result<net::ServerOptions> listening = server_options(options);
   if (!listening) return fail(listening.error());
@@ -123,27 +156,6 @@ Result<wire::SimulateReport> drive_by_external(const Options& options, const Ext
   return done;
 }
 
-namespace {
-
-Result<wire::ServeSummary> serve_until_stopped(const Options& options) {
-  static std::atomic<bool> stop{false};  // static: must outlive the last signal
-  let_interrupts_end();
-  Result<scenario::Scenario> scenario = experiment(options);
-  if (!scenario) return fail(scenario.error());
-  Result<std::optional<road::Track>> track = given_track(options, *scenario);
-  if (!track) return fail(track.error());
-  return drive_external_car(
-      options, std::move(*scenario), std::move(*track),
-      [](std::uint16_t port) { return fmt::format("a simulator on port {}", port); }, stop,
-      [&options](wire::ServeOptions serving, auto&&... rest) {
-        serving.clock.lock_step = 1e-3 * options.lock_step_ms;
-        serving.time_field = options.sim_time;
-        return wire::serve(serving, std::forward<decltype(rest)>(rest)...);
-      });
-}
-
-}  // namespace
-
 ExitCode serve(const Options& options) {
   const Result<wire::ServeSummary> summary = serve_until_stopped(options);
   if (!summary && run::must_stop_planning()) {
@@ -153,23 +165,6 @@ ExitCode serve(const Options& options) {
   if (!summary) return report(summary.error());
   return print(options, *summary, "answers", "simulators");
 }
-
-namespace {
-
-Result<wire::SimulateReport> connect_and_drive(const Options& options) {
-  static std::atomic<bool> stop{false};  // static: must outlive the last signal
-  catch_interrupts(stop);
-  wire::SimulateOptions simulating;
-  simulating.url = options.connect;
-  simulating.server_command = options.server;
-  return drive_by_external(
-      options, {}, stop,
-      [&](const scenario::Scenario& scenario, const road::Track&, const wire::SimulateHooks& hooks) {
-        return wire::simulate(simulating, scenario, hooks, stop);
-      });
-}
-
-}  // namespace
 
 ExitCode simulate(const Options& options) {
   const Result<wire::SimulateReport> done = connect_and_drive(options);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Runs with another program at the other end, in whatever protocol: the commands `serve`, `simulate` and
+// `ros`.
 #pragma once
 
 #include <atomic>
@@ -15,31 +17,31 @@
 #include "chicane/wire/simulate.hpp"
 #include "options.hpp"
 
-/// Runs with another program at the other end: `serve`, `simulate` and `ros`, whatever they speak.
-
 namespace chicane::apps {
 
-/// The controller of `scenario` drives a car that another program simulates, until `stop`: recorded, on the
-/// terminal and in the dashboard. Without a track the road comes from the simulator. `partner` completes
-/// "default (tracking-mpc) waits for ...", and knows the port of the dashboard. Ctrl-C sets `stop`, a static
-/// or a variable of main(), once the controller is ready.
+/// Drives a car that another program simulates with the controller of `scenario`, until `stop`. Records the
+/// run, and shows it on the terminal and in the dashboard. Without a track the road comes from the simulator.
+/// `partner`: end of "default (tracking-mpc) waits for ...", for the port of the dashboard. `stop`: set by
+/// Ctrl-C; static or a variable of main().
 [[nodiscard]] Result<wire::ServeSummary> drive_external_car(
     const Options& options, scenario::Scenario scenario, std::optional<road::Track> track,
     const std::function<std::string(std::uint16_t)>& partner, std::atomic<bool>& stop,
     const live::ServeFunction& serve = wire::serve);
-/// Results on stdout, and a sentence like "5 answers to 1 simulators; ..." on stderr, with these two nouns.
+/// Prints results on stdout, and a sentence like "5 answers to 1 simulators; ..." on stderr, with the nouns
+/// `answers` and `partners`.
 ExitCode print(const Options& options, const wire::ServeSummary& summary, std::string_view answers,
                std::string_view partners);
 
-/// Simulates the car of a scenario on a road, and calls the hooks.
+/// Function that simulates the car of a scenario on a road, and calls the hooks.
 using SimulateFunction = std::function<Result<wire::SimulateReport>(
     const scenario::Scenario& scenario, const road::Track& track, const wire::SimulateHooks& hooks)>;
+/// Options of drive_by_external().
 struct ExternalController {
-  bool wants_limit = true;  ///< searches the limit during the run, and compares its laps with it
-  /// Text for the terminal before the run; empty: nothing.
+  bool wants_limit = true;  ///< searches the limit during the run, and compares the laps with it
+  /// Text for the terminal before the run; empty: none.
   std::function<std::string(const scenario::Scenario&, const road::Track&)> on_start{};
 };
-/// Simulates the car for another program that drives it: recorded and on the terminal.
+/// Simulates a car that another program drives. Records the run, and shows it on the terminal.
 [[nodiscard]] Result<wire::SimulateReport> drive_by_external(const Options& options,
                                                              const ExternalController& external,
                                                              const std::atomic<bool>& stop,

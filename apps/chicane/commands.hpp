@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Commands of the programs `chicane` and `chicane-lab`: one table for help, completion and manual page, and
+// the rows of options of each command.
 #pragma once
 
 #include <initializer_list>
@@ -13,33 +15,38 @@
 
 namespace chicane::apps {
 
+/// Function that runs a command.
 using Action = ExitCode(const Options& options);
-/// Options of a command as rows whose targets are in `options`.
+/// Function that makes the rows of options of a command; their targets are in `options`.
 using RowsOf = Rows(Options& options);
 
+/// Command of the program.
 struct Command {
-  std::string_view name;
-  std::string_view group;  ///< heading in the help
-  std::string_view summary;
-  std::string_view example;
+  std::string_view name;     ///< as typed
+  std::string_view group;    ///< heading in the help
+  std::string_view summary;  ///< one line of the help
+  std::string_view example;  ///< a command line
   Action* run = nullptr;
-  RowsOf* rows = nullptr;    ///< null: it has no options
-  bool is_planning = false;  ///< plans laps or finds limits, which it may cache
+  RowsOf* rows = nullptr;    ///< null: the command has no options
+  bool is_planning = false;  ///< plans laps or finds limits, and keeps them in a cache
 };
 
+/// Commands of `chicane`.
 Action drive, serve, simulate, replay, limit, check, list, completion, manual;
-/// Commands of chicane-lab: many runs, logs and reports.
+/// Commands of `chicane-lab`: many runs, logs and reports.
 Action replay_any_logs, report_logs, make_video, compare_league, drive_sweep, merge_results, tune, campaign,
     recover, lane_change, try_claims, import_road, identify_car;
-/// Become the programs chicane-lab (lab/main.cpp) and chicane-bench (bench/program), kEnvironment where that
-/// is not built, and chicane-ros (ros/main.cpp), kUsage where that is not installed.
+/// Commands that another program runs, which takes the place of this process: chicane-lab (lab/main.cpp) and
+/// chicane-bench (bench/program), kEnvironment if they are not built; chicane-ros (ros/main.cpp), kUsage if
+/// it is not installed.
 Action in_lab, bench, ros;
 
+/// Options of all commands.
 RowsOf drive_rows, serve_rows, simulate_rows, replay_rows, report_rows, video_rows, limit_rows, league_rows,
     sweep_rows, merge_rows, tune_rows, campaign_rows, recover_rows, lane_change_rows, claims_rows, bench_rows,
     check_rows, list_rows, import_rows, identify_rows, ros_rows, completion_rows;
 
-/// All commands, in the order of the help, group by group; with the actions of `chicane`, or of chicane-lab.
+/// All commands in the order of the help, with the actions of `chicane` or of `chicane-lab`.
 template <bool kIsLab>
 inline constexpr Command kCommands[] = {
     {"drive", "Drive", "Controller and simulator in one process, with a dashboard",
@@ -97,9 +104,10 @@ inline constexpr Command kCommands[] = {
     {"manual", "Tools", "Manual page, as roff", "chicane manual | man -l -", manual, nullptr},
 };
 
+/// Commands of `chicane`.
 [[nodiscard]] inline std::span<const Command> commands() { return kCommands<false>; }
 
-/// Does the command that the options name, in this program or in chicane-lab.
+/// Runs the command that the options name, in `chicane` or in `chicane-lab`.
 template <bool kIsLab>
 [[nodiscard]] ExitCode do_command(const Options& options) {
   for (const Command& command : kCommands<kIsLab>)
@@ -107,24 +115,25 @@ template <bool kIsLab>
   return kUsage;
 }
 
-/// Options of a command, with the planning options if it plans; their targets are in `options`.
+/// Rows of options of a command, with --no-cache if it plans; their targets are in `options`.
 [[nodiscard]] Rows options_of(const Command& command, Options& options);
 
-/// Shelves that `chicane list` accepts.
+/// Names of the shelves of `chicane list`.
 [[nodiscard]] std::vector<std::string> list_names();
 /// Name on a shelf, and its meaning.
 struct ListEntry {
   std::string name, meaning;
 };
+/// All names on a shelf; none for an unknown shelf.
 [[nodiscard]] std::vector<ListEntry> list_entries(std::string_view shelf);
 
-/// Reads a log of another program into a recording, `output`.
+/// Function that converts a log of another program to the recording `output`.
 using LogConverter = Result<void> (*)(const std::string& file, const Options& options,
                                       const std::string& output);
-/// replay() with logs of other programs, which `convert` reads; null: there are none.
+/// Runs `chicane replay`. `convert` reads logs of other programs; null: no file is such a log.
 [[nodiscard]] ExitCode replay_logs(const Options& options, LogConverter convert);
 
-/// Says the error on stderr; which exit code it is.
+/// Prints an error on stderr, and returns its exit code.
 [[nodiscard]] ExitCode report(const Error& error);
 
 /// Rows of several groups, one after the other.
@@ -138,11 +147,11 @@ using LogConverter = Result<void> (*)(const std::string& file, const Options& op
 [[nodiscard]] Rows controller_rows(Options& options);
 /// Rows of track, laps and seed.
 [[nodiscard]] Rows world_rows();
-/// --set, behind all other settings: the last one wins.
+/// Row of --set. Pre: after all other rows of settings, because the last setting wins.
 [[nodiscard]] OptionRow set_row(Options& options);
+/// Rows of --json, --track and --jobs.
 [[nodiscard]] OptionRow json_row(Options& options);
 [[nodiscard]] OptionRow track_row();
-/// --jobs.
 [[nodiscard]] OptionRow jobs_row(Options& options);
 
 }  // namespace chicane::apps

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Experiment of a command line: its scenario, road, run and limit, and the summary in three forms.
+// Experiment of a command line: its scenario, road, run and limit; the limit as text, JSON and CSV.
 #include "experiment.hpp"
 
 #include <fmt/format.h>
@@ -49,7 +49,7 @@ Result<std::unique_ptr<run::ClosedLoop>> prepared(const scenario::Scenario& scen
                                                   const run::PlanHooks& hooks) {
   run::Roads roads;
   if (auto road = roads.of(scenario, run::make_track, hooks); !road) return fail(road.error());
-  return run::ClosedLoop::create(scenario, roads);  // answered from the remembered road
+  return run::ClosedLoop::create(scenario, roads);  // `roads` has the road already
 }
 
 std::string guard_notice(const safety::GuardOptions& guard) {
@@ -79,18 +79,18 @@ void print_notices(const scenario::Scenario& scenario) {
 
 namespace {
 
-/// Slowest and fastest of a line, and its length along the car's path.
-struct LineExtent {
-  double least_speed = 0.0, top_speed = 0.0;
+/// Slowest and fastest speed on a line [m/s].
+struct SpeedRange {
+  double least = 0.0, top = 0.0;
 };
 
-LineExtent extent_of(const road::RacingLine& line) {
-  LineExtent extent{line.points.front().vx, line.points.front().vx};
+SpeedRange speeds_of(const road::RacingLine& line) {
+  SpeedRange speeds{line.points.front().vx, line.points.front().vx};
   for (const road::RacingLinePoint& p : line.points) {
-    extent.least_speed = std::min(extent.least_speed, std::hypot(p.vx, p.vy));
-    extent.top_speed = std::max(extent.top_speed, std::hypot(p.vx, p.vy));
+    speeds.least = std::min(speeds.least, std::hypot(p.vx, p.vy));
+    speeds.top = std::max(speeds.top, std::hypot(p.vx, p.vy));
   }
-  return extent;
+  return speeds;
 }
 
 }  // namespace
@@ -101,13 +101,13 @@ Result<lap_time::PlantLimit> limit_of(const scenario::Scenario& scenario, const 
   StatusLine line;
   lap_time::PlantLimitOptions options{.wants_witness = question.wants_witness, .budget = question.budget};
   lap_time::PlanProgress progress;
-  options.on_progress = [&](const lap_time::PlanProgress& come) { progress = come; };
+  options.on_progress = [&](const lap_time::PlanProgress& now) { progress = now; };
   options.go_on = [&](std::string_view stage, int iteration, double lap_time) {
     if (line.is_due()) {
-      const bool is_far = progress.work <= 0.0 || progress.work >= progress.expected;
-      const double left_share = progress.expected / progress.work - 1.0;
+      const bool is_unknown = progress.work <= 0.0 || progress.work >= progress.expected;
+      const double left_share = progress.expected / progress.work - 1.0;  // work left over the work so far
       const std::string left =
-          is_far ? "" : fmt::format(", about {:.0f} s left", line.seconds() * left_share);
+          is_unknown ? "" : fmt::format(", about {:.0f} s left", line.seconds() * left_share);
       line.show(fmt::format("limit: {}, iteration {}, {:.3f} s{}", stage, iteration, lap_time, left));
     }
     return !wants_stop.load();
@@ -119,7 +119,7 @@ Result<lap_time::PlantLimit> limit_of(const scenario::Scenario& scenario, const 
 }
 
 std::string to_table(const LimitRun& run, const lap_time::PlantLimit& limit) {
-  const LineExtent extent = extent_of(limit.line);
+  const SpeedRange speeds = speeds_of(limit.line);
   if (limit.line.is_best_so_far)
     return fmt::format(
         "{} on {}: {:.3f} s is the best lap so far, no bound: {}\n"
@@ -127,8 +127,8 @@ std::string to_table(const LimitRun& run, const lap_time::PlantLimit& limit) {
         "searched {:.1f} s: {} nodes, {} iterations; stationarity {:.1e}, violation {:.1e}\n",
         run.car, run.track, limit.bound.lap,
         limit.is_cut_short ? "the budget ended the search (--budget-s)" : lap_time::kNoOptimum,
-        mps_to_mph(extent.least_speed), mps_to_mph(extent.top_speed), run.wall_time, limit.nodes,
-        limit.effort.iterations, limit.stationarity, limit.violation);
+        mps_to_mph(speeds.least), mps_to_mph(speeds.top), run.wall_time, limit.nodes, limit.effort.iterations,
+        limit.stationarity, limit.violation);
   std::string text = fmt::format("{} on {}: between {:.3f} s and ", run.car, run.track, limit.bound.lap);
   text += limit.witness
               ? fmt::format("{:.3f} s ({:+.2f} %)\n", limit.witness->lap_time, 100.0 * limit.bracket())
@@ -141,8 +141,8 @@ std::string to_table(const LimitRun& run, const lap_time::PlantLimit& limit) {
     text += fmt::format("witness  {:.3f} s, best of {} laps (slowest {:.3f} s), {:.3f} m from the edge\n",
                         limit.witness->lap_time, limit.witness->laps, limit.witness->worst,
                         limit.witness->least_edge);
-  text += fmt::format("speed    {:.1f} mph at least, {:.1f} at most\n", mps_to_mph(extent.least_speed),
-                      mps_to_mph(extent.top_speed));
+  text += fmt::format("speed    {:.1f} mph at least, {:.1f} at most\n", mps_to_mph(speeds.least),
+                      mps_to_mph(speeds.top));
   text +=
       fmt::format("found in {:.1f} s: {} nodes, {} iterations; stationarity {:.0e}, violation {:.0e}\n",
                   run.wall_time, limit.nodes, limit.effort.iterations, limit.stationarity, limit.violation);
@@ -151,7 +151,7 @@ std::string to_table(const LimitRun& run, const lap_time::PlantLimit& limit) {
 
 std::string to_json(const LimitRun& run, const lap_time::PlantLimit& limit) {
   using protocol::Json;
-  const LineExtent extent = extent_of(limit.line);
+  const SpeedRange speeds = speeds_of(limit.line);
   Json witness;
   if (limit.witness)
     witness = Json{{"lap_time_s", limit.witness->lap_time},
@@ -168,8 +168,8 @@ std::string to_json(const LimitRun& run, const lap_time::PlantLimit& limit) {
                   {"sector_times_s", limit.bound.sectors},
                   {"witness", witness},
                   {"bracket_percent", limit.witness ? Json(100.0 * limit.bracket()) : Json()},
-                  {"least_speed_mps", extent.least_speed},
-                  {"top_speed_mps", extent.top_speed},
+                  {"least_speed_mps", speeds.least},
+                  {"top_speed_mps", speeds.top},
                   {"nodes", limit.nodes},
                   {"iterations", limit.effort.iterations},
                   {"work_s", limit.effort.work},

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The program chicane. Commands of many runs, logs and reports are those of chicane-lab (lab/main.cpp).
 #include "commands.hpp"
 #include "program.hpp"
 

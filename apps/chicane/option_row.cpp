@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rows of options: values given to their targets, and the help as text of 80 columns.
+// Rows of options: assigns values to their targets, and makes the help of them.
 #include "option_row.hpp"
 
 #include <fmt/format.h>
@@ -16,29 +16,34 @@
 namespace chicane::apps {
 namespace {
 
+/// Whether a target is of one of these kinds.
 template <class... Kinds>
 bool holds_any(const Target& to) {
   return (std::holds_alternative<Kinds>(to) || ...);
 }
 
+/// Whether a target takes whole numbers.
 bool is_whole(const Target& to) {
   return holds_any<int*, std::uint16_t*, std::uint64_t*, std::vector<int>*>(to);
 }
 
+/// Whether a target takes numbers.
 bool is_number(const Target& to) { return is_whole(to) || holds_any<double*, std::optional<double>*>(to); }
 
+/// Whether a number is inside the limits of an option.
 bool is_within(const OptionRow& row, double number) {
   return !row.rule.within || (number >= row.rule.within->least && number <= row.rule.within->most);
 }
 
+/// Interval in words: " in [0, 1]", " > 0".
 std::string limits(const Interval& within) {
   if (within.most < kUnbounded)
     return fmt::format(" in [{}, {}]", number_text(within.least), number_text(within.most));
   return within.least > 0.0 ? " > 0" : " >= 0";
 }
 
-/// Reads a value into the target of a row. Returns the expectation if the value does not fit, else an empty
-/// text.
+/// Visitor that assigns a text to the target of a row. Returns the expectation that the text does not meet;
+/// else an empty text.
 struct Assign {
   const OptionRow& row;
   const std::string& text;
@@ -46,7 +51,7 @@ struct Assign {
 
   std::string operator()(bool* to) const { return *to = true, ""; }
   std::string operator()(Off to) const { return *to.value = false, ""; }
-  /// A value that the setting refuses is named by the option.
+  /// The schema checks the value; the message has the name of the option.
   std::string operator()(Setting to) const {
     const protocol::Parameter& parameter = *protocol::find(to.key);
     if (!protocol::parse(parameter, text)) return chicane::expectation(parameter.option);
@@ -64,6 +69,7 @@ struct Assign {
   }
 
  private:
+  /// Assigns a number that fits the rule and the type of the target.
   template <class Number, class To>
   std::string number(const std::optional<Number>& read, To& to) const {
     using Kind = std::conditional_t<std::is_integral_v<To>, To, double>;
@@ -75,7 +81,7 @@ struct Assign {
   }
 };
 
-/// Present value of a target as text; empty for targets without one.
+/// Visitor that gives the present value of a target as text; empty for targets that have none.
 struct DefaultText {
   template <class Value>
   std::string operator()(Value* value) const {
@@ -95,6 +101,7 @@ struct DefaultText {
   }
 };
 
+/// Parts of a text between separators.
 std::vector<std::string> split(const std::string& text, char at) {
   std::vector<std::string> parts{""};
   for (const char each : text) {
@@ -106,6 +113,7 @@ std::vector<std::string> split(const std::string& text, char at) {
   return parts;
 }
 
+/// Values for a message.
 std::string joined_values(const std::vector<std::string>& values) {
   std::vector<std::string> words;
   for (const std::string& value : values) words.push_back(printable(value));
@@ -177,10 +185,10 @@ std::string assign(const OptionRow& row, const std::vector<std::string>& given,
 
 namespace {
 
-constexpr std::size_t kWidth = 80;   ///< width of a terminal
-constexpr std::size_t kIndent = 27;  ///< column at which meanings begin
+constexpr std::size_t kWidth = 80;   // columns of a terminal
+constexpr std::size_t kIndent = 27;  // column at which meanings begin: fits most names; chosen
 
-/// An example that fits the screen and can be typed as it stands.
+/// Example in lines of 80 columns that can be typed as they are.
 std::string example_lines(std::string_view example) {
   std::string lines;
   std::size_t room = kWidth - std::string_view{"Example: "}.size();
@@ -194,11 +202,13 @@ std::string example_lines(std::string_view example) {
   return lines + std::string(example);
 }
 
+/// Entry of the help: names, and a text beside or below them.
 std::string entry(std::string_view names, std::string_view text, std::size_t indent = kIndent) {
   const std::string begin = fmt::format("  {}", names);
   return begin + wrapped(text, indent, begin.size() + 1 > indent ? indent + 1 : begin.size());
 }
 
+/// Entry of an option in the help.
 std::string entry(const OptionRow& row) {
   const std::string names = row.is_positional()
                                 ? std::string(row.value) + (row.takes_several() ? "..." : "")

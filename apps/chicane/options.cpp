@@ -19,7 +19,7 @@
 namespace chicane::apps {
 namespace {
 
-/// Six lines for a newcomer, in place of all commands.
+/// Help for a command line without a command.
 constexpr std::string_view kFirstSteps =
     "chicane drive                        drives a lap; open the link that it prints\n"
     "chicane drive --preset race --fast   races at once and prints the lap times\n"
@@ -28,12 +28,13 @@ constexpr std::string_view kFirstSteps =
     "chicane COMMAND --help               options of a command, with an example\n"
     "chicane --help                       all commands\n";
 
+/// Suggestion of the name that is nearest to a mistake; empty if none is near.
 std::string did_you_mean(std::string_view got, const std::vector<std::string_view>& names) {
   const std::string_view best = protocol::nearest(got, names);
   return best.empty() ? "" : fmt::format(" (did you mean {}?)", best);
 }
 
-/// Fault of a first word that is no command.
+/// Message about a first word that is no command.
 std::string command_fault(std::string_view word) {
   std::vector<std::string_view> names;
   for (const Command& command : commands()) names.push_back(command.name);
@@ -41,7 +42,7 @@ std::string command_fault(std::string_view word) {
                      fmt::join(names, ", "), did_you_mean(word, names));
 }
 
-/// Version text. A second line names what this program lacks and a package has.
+/// Text of --version. A second line names the instruction sets that this build lacks.
 std::string version_text() {
   const std::string left_out = instruction_sets_left_out();
   if (left_out.empty()) return "chicane " CHICANE_VERSION "\n";
@@ -49,7 +50,7 @@ std::string version_text() {
                      built_instruction_sets(), left_out);
 }
 
-/// Words of a command line, separated by the names of its options; the rows give them their meaning.
+/// Words of a command line, divided among the options of the rows by CLI11.
 class Words {
  public:
   explicit Words(const Rows& rows) : rows_(rows) {
@@ -61,7 +62,7 @@ class Words {
     }
   }
 
-  /// Fault of the words, or an empty text. `wants_help`: set by --help.
+  /// Divides the words. Returns the fault, or an empty text. `wants_help`: set by --help.
   std::string read(int count, const char* const* words, bool& wants_help) {
     try {
       app_.parse(count, words);
@@ -77,8 +78,10 @@ class Words {
     return "";
   }
 
+  /// Whether the last word is an option without its value.
   bool lacks_value() const { return lacks_value_; }
 
+  /// Values of an option, by the index of its row; without any, that of its environment variable.
   std::vector<std::string> values(std::size_t row) const {
     std::vector<std::string> given = options_[row]->results();
     const char* const variable = rows_[row].rule.environment;
@@ -87,6 +90,7 @@ class Words {
     return given;
   }
 
+  /// Whether an option is given.
   bool has(std::string_view name) const {
     for (std::size_t i = 0; i < rows_.size(); ++i)
       if (rows_[i].name() == name) return options_[i]->count() > 0;
@@ -94,7 +98,7 @@ class Words {
   }
 
  private:
-  /// First word that is no option, with the most similar option.
+  /// Message about the first word that no option takes.
   std::string unexpected() const {
     const std::vector<std::string> unknown = app_.remaining();
     const auto flag = std::find_if(unknown.begin(), unknown.end(),
@@ -107,6 +111,7 @@ class Words {
                        did_you_mean(got.substr(0, got.find('=')), {names.begin(), names.end()}));
   }
 
+  /// Message about an option without its value.
   std::string without_value(std::string_view typed) const {
     for (const OptionRow& row : rows_)
       for (const std::string& name : row.typed_names())
@@ -120,7 +125,8 @@ class Words {
   bool lacks_value_ = false;
 };
 
-/// Fault of an option among the others, or an empty text.
+/// Fault of an option together with the others: one that it needs is missing, or one that it excludes is
+/// given; or an empty text.
 std::string company_fault(const OptionRow& row, bool is_given, const Words& words) {
   if (!is_given)
     return row.rule.is_required ? fmt::format("got nothing, expected {}", row.expectation()) : "";
@@ -131,6 +137,7 @@ std::string company_fault(const OptionRow& row, bool is_given, const Words& word
   return "";
 }
 
+/// Assigns the words to the targets of the rows. Returns the first fault, or an empty text.
 std::string take_words(const Rows& rows, const Words& words, Options& options) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const std::vector<std::string> given = words.values(i);
@@ -141,6 +148,7 @@ std::string take_words(const Rows& rows, const Words& words, Options& options) {
   return "";
 }
 
+/// Prints a fault on stderr.
 Done refuse(std::string_view name, std::string_view fault) {
   print_sentence(stderr, fmt::format("{}: {}", name, fault));
   fmt::print(stderr, "See `{} --help`.\n", name);
@@ -174,7 +182,7 @@ std::variant<Options, Done> parse_command_line(int count, const char* const* wor
   std::string fault = given.read(count - 1, words + 1, wants_help);
   if (wants_help)
     return fmt::print("{}", command_help(command->name, command->summary, rows, command->example)), Done{};
-  // A word too many is often the rest of a value with blanks: the fault of the value comes first then.
+  // The fault of a value comes first: an unexpected word is often the rest of a value with blanks.
   if (const std::string value_fault = take_words(rows, given, options);
       !value_fault.empty() && !given.lacks_value())
     fault = value_fault;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Commands in programs of their own, so that no other command waits for their libraries.
+// Body of main, interrupts and status line; and the commands that other programs run, so that no other
+// command waits for their libraries.
 #include "program.hpp"
 
 #include <fmt/format.h>
@@ -26,10 +27,13 @@
 namespace chicane::apps {
 namespace {
 
+namespace fs = std::filesystem;
+
+// Times between two lines of StatusLine, on a terminal and in a file; chosen.
 constexpr std::chrono::milliseconds kTerminalPeriod{100};
 constexpr std::chrono::seconds kLogPeriod{10};
 
-/// Plans and limits are kept where the user's caches are, unless --no-cache is given.
+/// Keeps plans and limits in the user's cache folder, unless --no-cache is given.
 void use_cache(const Options& options) {
   const std::string folder = options.uses_cache ? run::DiskCache::default_folder() : "";
   if (folder.empty()) return;
@@ -38,10 +42,9 @@ void use_cache(const Options& options) {
   }));
 }
 
-/// The file that a path of version 0.2 names: shipped files lay in the root of a clone, and lie in data and
-/// studies.
+/// Present path of a shipped file. In version 0.2 these files were in the root of a clone; they are in data
+/// and studies now.
 std::string present_path(const std::string& word) {
-  namespace fs = std::filesystem;
   const fs::path old = word.substr(0, word.find('/'));
   std::error_code ignored;
   if (old.empty() || old == word || fs::exists(old, ignored)) return word;
@@ -55,6 +58,7 @@ std::string present_path(const std::string& word) {
   return word;
 }
 
+/// Reads the command line and runs its command.
 ExitCode parse_and_run(int count, const char* const* given, ExitCode (*run)(const Options&)) {
   std::vector<std::string> present(given, given + count);
   std::vector<const char*> words;
@@ -72,6 +76,57 @@ ExitCode parse_and_run(int count, const char* const* given, ExitCode (*run)(cons
   const ExitCode code = run(std::get<Options>(parsed));
   if (std::fflush(stdout) == 0) return code;
   std::fprintf(stderr, "chicane: the results could not be written: %s\n", std::strerror(errno));
+  return kEnvironment;
+}
+
+// Globals, because a signal handler has access to nothing else.
+std::atomic<std::atomic<bool>*> interrupt_flag{nullptr};  // flag of catch_interrupts()
+std::atomic<std::int64_t> first_ns{0};                    // time of the first signal [ns]; 0: none yet
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<std::int64_t>::is_always_lock_free &&
+              std::atomic<std::atomic<bool>*>::is_always_lock_free);
+
+/// Time since the start of the machine [ns]. A signal handler may call it, unlike the clocks of C++.
+std::int64_t monotonic_ns() {
+  std::timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+/// Signal handler of catch_interrupts().
+void interrupt(int signal) {
+  const std::int64_t now = monotonic_ns();
+  std::int64_t first = 0;
+  if (first_ns.compare_exchange_strong(first, now)) {
+    if (std::atomic<bool>* flag = interrupt_flag.load()) *flag = true;
+  } else if (now - first > std::chrono::nanoseconds(kOneInterrupt).count()) {
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);  // delivered after this handler returns
+  }
+}
+
+/// Folders of the other programs, relative to the folder of this one: for a build folder, bin and
+/// libexec/chicane of an installation.
+constexpr const char* kPlaces[] = {"", "../libexec/chicane", "../../bin"};
+
+/// Whether a file can be started.
+bool is_program(const fs::path& file) {
+  std::error_code error;
+  return fs::is_regular_file(file, error) && ::access(file.c_str(), X_OK) == 0;
+}
+
+/// Replaces this process, or prints why that fails.
+ExitCode become_or_say_why(const std::string& program, std::vector<std::string> words) {
+  fmt::print(stderr, "{}\n", become(program, std::move(words)));
+  return kEnvironment;
+}
+
+/// Prints how to build a program that is missing.
+ExitCode say_how_to_build(const std::string& command, std::string_view program, std::string_view meaning,
+                          std::string_view target) {
+  fmt::print(stderr,
+             "chicane {0}: {1}, the program {2}, is not built (looked in {4}).\n"
+             "In a clone `./run.sh {0}` builds it; in a build folder `cmake --build . --target {3}`.\n",
+             command, program, meaning, target, own_folder());
   return kEnvironment;
 }
 
@@ -101,60 +156,17 @@ int program_of(const char* command, int count, const char* const* words,
   return program(static_cast<int>(all.size()), all.data(), run);
 }
 
-namespace {
-
-// The globals: a signal handler can reach nothing else.
-std::atomic<std::atomic<bool>*> wanted{nullptr};
-std::atomic<std::int64_t> first_ns{0};  // time of the first signal [ns]; 0: none yet
-static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<std::int64_t>::is_always_lock_free &&
-              std::atomic<std::atomic<bool>*>::is_always_lock_free);
-
-/// Time since the machine started [ns]; may be asked in a signal handler, unlike the clocks of C++.
-std::int64_t monotonic_ns() {
-  std::timespec now{};
-  ::clock_gettime(CLOCK_MONOTONIC, &now);
-  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
-}
-
-void interrupt(int signal) {
-  const std::int64_t now = monotonic_ns();
-  std::int64_t first = 0;
-  if (first_ns.compare_exchange_strong(first, now)) {
-    if (std::atomic<bool>* flag = wanted.load()) *flag = true;
-  } else if (now - first > std::chrono::nanoseconds(kOneInterrupt).count()) {
-    std::signal(signal, SIG_DFL);
-    std::raise(signal);  // delivered when this handler returns
-  }
-}
-
-}  // namespace
-
 void let_interrupts_end() {
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
 }
 
 void catch_interrupts(std::atomic<bool>& flag) {
-  wanted = &flag;
+  interrupt_flag = &flag;
   run::stop_planning_by(flag);
   std::signal(SIGINT, interrupt);
   std::signal(SIGTERM, interrupt);
 }
-
-namespace {
-
-namespace fs = std::filesystem;
-
-/// Places of the other programs, from this program's folder: a build folder, bin and libexec/chicane of an
-/// installation.
-constexpr const char* kPlaces[] = {"", "../libexec/chicane", "../../bin"};
-
-bool is_program(const fs::path& file) {
-  std::error_code error;
-  return fs::is_regular_file(file, error) && ::access(file.c_str(), X_OK) == 0;
-}
-
-}  // namespace
 
 std::string own_folder() {
   const std::string program = protocol::data_origins().program;
@@ -186,24 +198,6 @@ std::string become(const std::string& program, std::vector<std::string> words) {
   ::execv(program.c_str(), arguments.data());
   return program + " cannot be started: " + std::strerror(errno);
 }
-
-namespace {
-
-ExitCode become_or_say_why(const std::string& program, std::vector<std::string> words) {
-  fmt::print(stderr, "{}\n", become(program, std::move(words)));
-  return kEnvironment;
-}
-
-ExitCode say_how_to_build(const std::string& command, std::string_view program, std::string_view meaning,
-                          std::string_view target) {
-  fmt::print(stderr,
-             "chicane {0}: {1}, the program {2}, is not built (looked in {4}).\n"
-             "In a clone `./run.sh {0}` builds it; in a build folder `cmake --build . --target {3}`.\n",
-             command, program, meaning, target, own_folder());
-  return kEnvironment;
-}
-
-}  // namespace
 
 StatusLine::StatusLine() : is_terminal_{isatty(STDERR_FILENO) == 1} {
   next_ = begin_ + (is_terminal_ ? std::chrono::seconds{0} : kLogPeriod);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Frame of the programs: main with its error handling, interrupts, the status line, and programs that take
+// the place of this process.
 #pragma once
 
 #include <atomic>
@@ -11,29 +13,30 @@
 
 namespace chicane::apps {
 
-/// The body of a program's `main`: reads the command line, does `run`, and prints what went wrong. `words`:
-/// main's, the program first and a command second.
+/// Body of `main`: reads the command line, calls `run`, and prints errors. `words`: arguments of main, the
+/// program first and the command second. Returns the exit code.
 [[nodiscard]] int program(int count, const char* const* words, ExitCode (*run)(const Options&)) noexcept;
 
-/// Runs a program that is one command: `words` are main's, the program first and then its options.
+/// Body of `main` of a program that is one command. `words`: arguments of main, the program first and then
+/// options.
 [[nodiscard]] int program_of(const char* command, int count, const char* const* words,
                              ExitCode (*run)(const Options&)) noexcept;
 
-/// Signals closer to the first than this are the same request: a terminal or a program like `timeout` may
-/// send one to the process and one to its group, and a second Ctrl-C by hand takes longer.
+/// Time after a first signal within which further ones are the same request; chosen: a terminal or a program
+/// like `timeout` may signal the process and its group at once, and a second Ctrl-C by hand takes longer.
 inline constexpr std::chrono::milliseconds kOneInterrupt{500};
 
-/// Makes Ctrl-C and SIGTERM end the process at once, even if its parent ignores them: a racing line is
-/// planned for up to half a minute, and there is nothing to keep yet.
+/// Makes Ctrl-C and SIGTERM end the process at once, even if its parent ignores them. For the time before a
+/// run, when there are no results to keep.
 void let_interrupts_end();
 
-/// Makes Ctrl-C and SIGTERM set `flag`, for a run that ends itself with its results. Another signal more than
-/// `kOneInterrupt` after the first ends the process at once. `flag` must outlive the process's last signal:
-/// make it static, or a variable of main().
+/// Makes Ctrl-C and SIGTERM set `flag`, on which a run ends with its results. Another signal more than
+/// kOneInterrupt after the first ends the process at once. Pre: `flag` is static or a variable of main(), so
+/// that it outlives the last signal.
 void catch_interrupts(std::atomic<bool>& flag);
 
-/// Shows on stderr how far some work is: on a terminal one line that renews itself ten times a second,
-/// otherwise a line every ten seconds.
+/// Progress of some work on stderr: on a terminal one line, rewritten ten times a second, otherwise a line
+/// every ten seconds.
 class StatusLine {
  public:
   StatusLine();
@@ -46,30 +49,31 @@ class StatusLine {
   [[nodiscard]] double seconds() const;
   /// Whether it is time for another show().
   [[nodiscard]] bool is_due() const { return Clock::now() >= next_; }
+  /// Shows a line in place of the last one.
   void show(std::string_view line);
-  /// Leaves the cursor at the beginning of a line, below the one that was shown. Any thread.
+  /// Keeps the last line, and moves the cursor to the begin of the next one. Any thread.
   void end();
-  /// Wipes the line that was shown.
+  /// Erases the last line.
   void clear();
 
  private:
   using Clock = std::chrono::steady_clock;
   bool is_terminal_;
-  std::atomic<bool> has_line_{false};  ///< the cursor stands behind a line that will be rewritten
+  std::atomic<bool> has_line_{false};  ///< the cursor is at the end of a line that will be rewritten
   Clock::time_point begin_ = Clock::now();
-  Clock::time_point next_;
+  Clock::time_point next_;  ///< time of the next show()
 };
 
-// Programs that are installed apart from this one, and do the work of one of its commands.
+// Programs beside this one that run some of its commands.
 
-/// The program of that name: in the folder of this one, in libexec/chicane or bin of an installation, or on
-/// PATH where `is_on_path`. Empty when there is none.
+/// Path of the program of that name: in the folder of this one, in libexec/chicane or bin of an installation,
+/// or with `is_on_path` on PATH. Empty if there is none.
 [[nodiscard]] std::string other_program(const std::string& name, bool is_on_path);
 
-/// The folder that this program lies in; empty where the system does not say.
+/// Folder of this program; empty if the system does not know it.
 [[nodiscard]] std::string own_folder();
 
-/// Becomes `program`, called with `words`. Comes back only where it cannot be started, with the reason.
+/// Replaces this process by `program` with the arguments `words`. Returns only on failure, with the reason.
 [[nodiscard]] std::string become(const std::string& program, std::vector<std::string> words);
 
 }  // namespace chicane::apps

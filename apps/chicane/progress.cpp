@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Progress on the terminal: notices and the line of a run, the line of a completed lap, and the wait for a
-// plan, with a page at the dashboard's address meanwhile.
+// Output of a run on stderr: notices, progress and laps, the wait for a plan with a page at the dashboard's
+// address, the recording and the report; and the address of the dashboard.
 #include "progress.hpp"
 
 #include <arpa/inet.h>
@@ -28,10 +28,12 @@ namespace {
 
 using telemetry::Situation;
 
+/// Whether the guard replaces the commands of the controller.
 bool is_replaced(const Situation& now) {
   return now.rung != controller::Rung::kController && now.driver != Situation::Driver::kPerson;
 }
 
+/// Whether the car has been standing for long.
 bool is_stuck(const Situation& now, double time) {
   return now.stands_since >= 0.0 && time - now.stands_since >= telemetry::kStuckAfter;
 }
@@ -39,11 +41,11 @@ bool is_stuck(const Situation& now, double time) {
 }  // namespace
 
 std::vector<std::string> RunNotices::look_at(const telemetry::Frame& frame) {
-  if (frame.time < last_time_) *this = {};  // another run began
+  if (frame.time < last_time_) *this = {};  // another run has begun
   last_time_ = frame.time;
   const Situation& now = frame.situation;
   if (now.driver == Situation::Driver::kPerson) said_.clear();
-  // No event: report the end of the last one.
+  // No event now: report the end of the last one.
   if (!is_replaced(now) && severity_of(now) != Severity::kError) {
     std::string line = ended(frame.time);
     return line.empty() ? std::vector<std::string>{} : std::vector{std::move(line)};
@@ -55,7 +57,7 @@ std::vector<std::string> RunNotices::look_at(const telemetry::Frame& frame) {
   }
   goes_on_ = true;
   if (is_replaced(now)) ++replaced_;
-  // One sentence for a new event, and another one when it changes.
+  // A line for a new event, and another line when its text changes.
   const bool is_held = now.kind == telemetry::SituationKind::kGuardHolds;
   if (is_held && !is_stuck(now, frame.time) && !begins) return {};  // a stored stop that has ended
   std::string text = sentence_of(now);
@@ -68,7 +70,6 @@ std::vector<std::string> RunNotices::look_at(const telemetry::Frame& frame) {
   return {fmt::format("{:.1f} s: {}", frame.time, said_)};
 }
 
-/// Line that reports the end of an event, once, after a pause.
 std::string RunNotices::ended(double time) {
   if (std::exchange(goes_on_, false)) ended_ = time;
   if (said_.empty() || time - ended_ < telemetry::kAlarmPause) return "";
@@ -81,9 +82,9 @@ std::string RunNotices::ended(double time) {
 
 namespace {
 
-constexpr double kLinePeriod = 10.0;  // seconds of the run
+constexpr double kLinePeriod = 10.0;  // [s] of the run between two lines without a terminal; chosen
 
-/// At most 80 columns.
+/// Line about a frame, at most 80 columns.
 std::string line(const telemetry::Frame& frame) {
   const double error = frame.has_truth ? frame.lateral_error : frame.result.report.lateral_error;
   const std::string place =
@@ -118,9 +119,10 @@ void Progress::say(std::string_view line) {
 
 namespace {
 
-constexpr std::chrono::milliseconds kGoodbyeOfPage{50};
+constexpr std::chrono::milliseconds kGoodbyeOfPage{50};  // time for closing connections of the page; chosen
 
-/// Road in SVG as a stroke of its mean width, with a dashed stroke on it; the caller appends the dash length.
+/// Begin of a drawing of the road in SVG: a stroke of the road's mean width, and a dashed stroke on it, up to
+/// the length of the dash.
 std::string picture_of(const road::Track& track) {
   constexpr int kPoints = 240;  // samples along the road
   std::string path;
@@ -141,8 +143,8 @@ std::string picture_of(const road::Track& track) {
       width, path, 0.25 * width);
 }
 
-/// Page shown while a lap is planned; `done`: share of the work [%], drawn on the road in the colour of plans
-/// (web/src/styles/tokens.css).
+/// Page shown while a lap is planned. `road`: picture_of() the road; `done`: share of the work [%], drawn
+/// along the road in the colour of plans (web/src/styles/tokens.css); `lap_time`: of the plan so far [s].
 net::Content waiting_page(const std::string& road, const std::string& line, double done, double lap_time) {
   return {.content_type = "text/html; charset=utf-8",
           .bytes = fmt::format(
@@ -163,17 +165,17 @@ net::Content waiting_page(const std::string& road, const std::string& line, doub
 
 }  // namespace
 
-/// State shared with the network thread, which answers while this one plans.
+/// Page of the wait: the network thread answers requests while this thread plans.
 struct PlanWait::Page {
-  std::string road;
-  std::mutex mutex;
-  std::string line;
+  std::string road;  ///< picture_of() the road
+  std::mutex mutex;  ///< guards `line` and `now`
+  std::string line;  ///< plan_line()
   lap_time::PlanProgress now;
   std::unique_ptr<net::Server> server;  // last: destroyed first
 };
 
 std::string plan_line(const lap_time::PlanProgress& now, double elapsed, double budget) {
-  const double per_work = now.work > 0.0 ? elapsed / now.work : 0.0;
+  const double per_work = now.work > 0.0 ? elapsed / now.work : 0.0;  // time for a second of work [s]
   if (now.work < now.expected)
     return fmt::format("planning the lap: {:.0f} %, about {:.0f} s left", 100.0 * now.work / now.expected,
                        std::ceil(per_work * (now.expected - now.work)));
@@ -242,7 +244,7 @@ void PlanWait::show(const lap_time::PlanProgress& now) {
 
 namespace {
 
-/// Checks before the run that its recording can become a report.
+/// Checks before a run that its recording can become a report.
 Result<void> can_be_reported(const std::string& file) {
   if (live::document_bundle().script.empty()) {
     return fail(ErrorCode::kNotFound,
@@ -332,7 +334,7 @@ Result<void> KeptRun::write_report() const {
 
 namespace {
 
-/// Address of this machine that others may reach; empty if it has none.
+/// Address of this machine that others may reach; empty if there is none.
 std::string own_address() {
   ifaddrs* all = nullptr;
   if (::getifaddrs(&all) != 0) return {};
@@ -349,7 +351,7 @@ std::string own_address() {
   return found;
 }
 
-/// Host that a browser asks for.
+/// Host in the address of the dashboard, for the address that the server listens on.
 std::string host_of(const std::string& address) {
   if (address == "127.0.0.1") return "localhost";
   if (address == "0.0.0.0" || address == "::") {
@@ -367,7 +369,7 @@ Result<net::ServerOptions> server_options(const Options& options) {
   server.port = options.port;
   server.allowed_origins = options.allowed_origins;
   server.allowed_hosts = options.allowed_hosts;
-  server.goodbye = std::chrono::seconds{4};  // a page on a busy machine may be behind
+  server.goodbye = std::chrono::seconds{4};  // chosen: a page on a busy machine may be behind
   if (!options.needs_token) return server;
   Result<std::string> token = net::make_token();
   if (!token) return fail(token.error());

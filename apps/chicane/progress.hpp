@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Output of a run on stderr: progress and notices, the wait for a planned lap, the recording and the report.
 #pragma once
 
 #include <atomic>
@@ -24,55 +25,57 @@
 
 namespace chicane::apps {
 
-/// Watches the situations of a run for what its operator must know at once: the controller's commands are
-/// replaced or the car is stuck, why, what ends it, and that it has ended. Prints at most two lines for each
-/// second of the run.
+/// Notices for the operator about events of a run: the guard replaces the controller's commands, or the car
+/// is stuck. They say why, what ends the event, and when it has ended. At most two lines for each second of
+/// the run.
 class RunNotices {
  public:
-  /// Lines for a frame; mostly none.
+  /// Lines to print for a frame; mostly none.
   [[nodiscard]] std::vector<std::string> look_at(const telemetry::Frame& frame);
 
  private:
+  /// Line about the end of the event at `time` [s]; empty while it may continue, and if there is none.
   [[nodiscard]] std::string ended(double time);
 
-  double last_time_ = 0.0;
-  // Event that continues, or ended less than telemetry::kAlarmPause ago.
-  std::string said_;            ///< printed last; empty: none
-  double said_at_ = 0.0;        ///< [s]
-  double began_ = 0.0;          ///< [s]
-  double ended_ = 0.0;          ///< first step after it [s]
-  bool goes_on_ = false;        ///< the event continues in the last step
-  std::uint64_t replaced_ = 0;  ///< count of commands
+  double last_time_ = 0.0;  ///< time of the last frame [s]
+  // Present event: it continues, or has ended less than telemetry::kAlarmPause ago.
+  std::string said_;            ///< text of the last line about it; empty: there is no event
+  double said_at_ = 0.0;        ///< time of that line [s]
+  double began_ = 0.0;          ///< time of the first frame of the event [s]
+  double ended_ = 0.0;          ///< time of the first frame after it [s]
+  bool goes_on_ = false;        ///< the last frame belongs to it
+  std::uint64_t replaced_ = 0;  ///< number of replaced commands
 };
 
-/// A completed lap in words: "lap 2: 26.19 s, 97.1 mph in the mean, clean".
+/// Completed lap in words: "lap 2: 26.19 s, 97.1 mph in the mean, clean".
 [[nodiscard]] std::string line_of(const telemetry::CompletedLap& lap);
 
-/// Reports a run's progress on stderr: on a terminal one line, rewritten ten times a second, otherwise a line
-/// every ten seconds of the run. Notices are lines of their own, printed at once.
+/// Progress of a run on stderr: on a terminal one line, rewritten ten times a second, otherwise a line every
+/// ten seconds of the run. Notices are printed at once, as lines of their own.
 class Progress {
  public:
+  /// Takes in a frame, and prints what is due.
   void show(const telemetry::Frame& frame);
   /// Prints a line of its own. Any thread.
   void say(std::string_view line);
 
  private:
   StatusLine line_;
-  double next_run_time_ = 10.0;
+  double next_run_time_ = 10.0;  ///< time of the run at which the next line is due without a terminal [s]
   RunNotices notices_;
 };
 
-/// Progress in words: "planning the lap: 42 %, about 12 s left". `elapsed`: time so far [s]; `budget`: limit
-/// of the work [s].
+/// Progress of a plan in words: "planning the lap: 42 %, about 12 s left". `elapsed`: time so far [s];
+/// `budget`: limit of the work [s].
 [[nodiscard]] std::string plan_line(const lap_time::PlanProgress& now, double elapsed, double budget);
 
-/// Shows the progress of a plan on stderr and, if a dashboard follows, as a page at its address. Both begin
-/// with the first iteration: a plan from the cache shows nothing.
+/// Progress of a plan on stderr and, if a dashboard follows, as a page at the address of the dashboard. Both
+/// begin with the first iteration: a plan from the cache shows nothing.
 class PlanWait {
  public:
   /// `server`: options of the dashboard that follows; none: no page. Both must outlive this.
   PlanWait(const scenario::Scenario& scenario, std::optional<net::ServerOptions>* server);
-  /// Ends the line and the page; copies the page's port to `server`.
+  /// Ends the line and the page, and stores the port of the page in `server`.
   ~PlanWait();
   PlanWait(const PlanWait&) = delete;
   PlanWait& operator=(const PlanWait&) = delete;
@@ -84,28 +87,29 @@ class PlanWait {
 
  private:
   struct Page;
+  /// Shows the progress on the line and the page.
   void show(const lap_time::PlanProgress& now);
+  /// Opens the page, if a dashboard follows.
   void open();
 
   const scenario::Scenario& scenario_;
   std::optional<net::ServerOptions>* server_;
   StatusLine line_;
-  bool has_begun_ = false;
-  std::unique_ptr<Page> page_;
-  Result<void> opened_{};
+  bool has_begun_ = false;      ///< show() was called
+  std::unique_ptr<Page> page_;  ///< null: no page
+  Result<void> opened_{};       ///< error of opening the page
 };
 
-/// Checks that browsers open a page of this name. Fails with "OPTION: got x.txt, expected a name that ends in
-/// .html". Passes the empty name, which is no file, and devices.
+/// Checks that browsers open a file of this name. Fails with "OPTION: got x.txt, expected a name that ends in
+/// .html". Accepts the empty name, which stands for no file, and devices.
 [[nodiscard]] Result<void> check_page_name(std::string_view option, const std::string& file);
 
-/// Recording and report of a run (--record, --report), made of every control step. Does nothing without
-/// either option.
+/// Recording and report of a run (--record, --report). Does nothing without either option.
 class KeptRun {
  public:
-  /// `step_budget` [s]: deadline of a control step in real time; 0 with --fast, where the run waits for the
-  /// disk. Fails as Recorder::create does. Fails also if the report cannot be written at the end: kNotFound
-  /// without a dashboard in this program, kIo without a folder.
+  /// Begins the recording. `step_budget`: deadline of a control step in real time [s]; 0 with --fast, when
+  /// the run waits for the disk. Fails as Recorder::create(); and if the report cannot be written at the end:
+  /// kNotFound without a dashboard in this program, kIo without a folder.
   [[nodiscard]] static Result<std::unique_ptr<KeptRun>> start(const Options& options, protocol::Run run,
                                                               const scenario::Scenario& scenario,
                                                               double step_budget);
@@ -117,12 +121,13 @@ class KeptRun {
   void record(What&& what) {
     if (recorder_) recorder_->record(std::forward<What>(what));
   }
-  /// Closes the recording, writes the report, and sums them up on stderr.
+  /// Closes the recording, writes the report, and prints a summary on stderr.
   [[nodiscard]] Result<void> finish();
 
  private:
   explicit KeptRun(const Options& options)
       : record_file_{options.record_file}, report_file_{options.report_file}, is_bag_{options.is_bag} {}
+  /// Writes the report of the closed recording.
   [[nodiscard]] Result<void> write_report() const;
 
   std::string record_file_;
@@ -132,11 +137,12 @@ class KeptRun {
   std::unique_ptr<recording::Recorder> recorder_;
 };
 
-/// Listening address and access rules from the command line, with a new token unless --no-token.
-/// kInvalidArgument for --no-token on an address that other machines reach.
+/// Options of the server by the command line: address, port and access, with a new token unless --no-token is
+/// given.
 [[nodiscard]] Result<net::ServerOptions> server_options(const Options& options);
 
-/// Address that a person opens: "http://localhost:4567/?token=...". The browser keeps the token as a cookie.
+/// Address of the dashboard for people: "http://localhost:4567/?token=...". The browser keeps the token as a
+/// cookie.
 [[nodiscard]] std::string link(const net::ServerOptions& server, std::uint16_t port);
 
 }  // namespace chicane::apps

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Tables of the options of `drive`, `serve`, `simulate`, `ros`, `replay`, `report`, `identify` and `check`. A
-// row has the option's name, its value's name, its meaning in --help, the member of Options or the setting
-// that it fills, and rules such as a range.
+// row has the name of the option, the name of its value, the meaning in --help, the member of Options or the
+// setting that it fills, and rules such as a range. Ranges are chosen, unless a comment or constant has
+// another reason.
 #include <fmt/format.h>
 
 #include <string>
@@ -15,14 +16,17 @@
 namespace chicane::apps {
 namespace {
 
+/// Option for the latency.
 OptionRow latency_row(std::string meaning) {
   return {"--latency-ms", "X", std::move(meaning), Setting{"latency_ms"}};
 }
 
+/// Option for JSON at the end of a run that another program may end.
 OptionRow json_at_end_row(Options& o) {
   return {"--json", "", "Print one JSON object on stdout at the end, all else on stderr", &o.is_json};
 }
 
+/// Options for the server of dashboard and simulator.
 Rows port_rows(Options& o) {
   return {
       {"--port", "P", "Port of dashboard and simulator socket; 0 takes any free one", &o.port,
@@ -37,6 +41,7 @@ Rows port_rows(Options& o) {
   };
 }
 
+/// Options for recording and report.
 Rows record_rows(Options& o) {
   return {
       {"--record", "FILE", "Record every control step in a new MCAP file", &o.record_file},
@@ -49,21 +54,24 @@ Rows record_rows(Options& o) {
   };
 }
 
+/// Option for faults of the run.
 OptionRow fault_row(Options& o) {
   return {"--fault", "NAME@S+S*X", "Fault at a second of the run, for so long, so strong", &o.faults,
           from_shelf("faults")};
 }
 
+/// Positional arguments for recordings and logs.
 OptionRow logs_row(Options& o, std::string meaning) {
   return {"logs", "LOG", std::move(meaning), &o.log_files, kRequired};
 }
 
+/// Options for the topics of a bag.
 Rows topic_rows(Options& o) {
   return {{"--odom-topic", "TOPIC", "Odometry of a bag that has several", &o.identify.odom_topic},
           {"--drive-topic", "TOPIC", "Commands of a bag that has several", &o.identify.drive_topic}};
 }
 
-/// Options for logs of other programs; they are refused beside the options `excludes`.
+/// Options for logs of other programs, which exclude the options `excludes`.
 Rows foreign_rows(Options& o, std::vector<std::string_view> excludes) {
   return joined(
       {{{"--track", "NAME|FILE", "Road of a log of another program", Setting{"track"}, without(excludes)},
@@ -83,6 +91,7 @@ OptionRow speed_mph_row(Options& o) {
   return {"--speed-mph", "X", "Speed reference of the controller [mph]", take, kOnce};
 }
 
+/// Options of a ROS 2 node.
 Rows ros_network_rows(Options::Ros& ros) {
   const auto topic = [](std::string name, std::string& to, std::string meaning) {
     return OptionRow{std::move(name), "TOPIC", std::move(meaning), &to, kShown};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rows of options of the commands that drive many runs, and of limit, import, video, bench, list, completion.
+// Tables of the options of the commands that drive many runs, and of `limit`, `import`, `video`, `bench`,
+// `list` and `completion` (run_options.cpp describes a row). Ranges are chosen.
 #include <fmt/format.h>
 
 #include <string>
@@ -13,9 +14,10 @@
 namespace chicane::apps {
 namespace {
 
-constexpr int kLongestHorizon =
-    200;  ///< limit of bench/problems/structured_solver.hpp, which is not part of this program
+// Limit of bench/problems/structured_solver.hpp, which is not part of this program.
+constexpr int kLongestHorizon = 200;
 
+/// Option for the start of a road.
 OptionRow start_row(std::vector<double>& start) {
   const auto take = [&start](const std::string& text) -> std::string {
     const std::size_t comma = text.find(',');
@@ -28,6 +30,7 @@ OptionRow start_row(std::vector<double>& start) {
   return {"--start", "X,Y", "Place whose nearest point becomes the start [m], like 3.5,-1", take, kOnce};
 }
 
+/// Option for the width of a film: even, because encoders need it.
 OptionRow film_width_row(int& width) {
   const auto take = [&width](const std::string& text) -> std::string {
     const auto pixels = count_in(text);
@@ -40,6 +43,7 @@ OptionRow film_width_row(int& width) {
           kOnce};
 }
 
+/// Option for an optional length.
 OptionRow metres_row(std::string name, std::optional<double>& metres, Interval within, std::string meaning) {
   return {std::move(name), "X", std::move(meaning), &metres, between(within.least, within.most)};
 }
@@ -121,31 +125,38 @@ Rows completion_rows(Options& o) {
 
 namespace {
 
+/// Option for the file of results of many runs.
 OptionRow results_row(Options& o, std::string_view each) {
   return {"--results", "FILE.jsonl",
           fmt::format("File with a line for each {}; one that is there is completed", each), &o.results_file};
 }
 
+/// Option for a list of names with a default.
 OptionRow names_row(std::string name, std::vector<std::string>& names, std::string meaning) {
   return {std::move(name), "NAME,...", std::move(meaning), &names, kShown};
 }
 
+/// Option for a number of things with a default.
 OptionRow count_row(std::string name, int& count, Interval within, std::string meaning) {
   return {std::move(name), "N", std::move(meaning), &count, between(within.least, within.most) | kShown};
 }
 
+/// Option for a seed.
 OptionRow seed_row(std::string name, std::uint64_t& seed, std::string meaning) {
   return {std::move(name), "N", std::move(meaning), &seed, kShown};
 }
 
+/// Option for the main file to write.
 OptionRow output_row(Options& o, std::string_view value, std::string meaning, bool is_required = false) {
   return {"-o,--output", value, std::move(meaning), &o.output_file, {.is_required = is_required}};
 }
 
+/// Positional argument for a file to read.
 OptionRow file_row(std::string name, std::string_view value, std::string meaning, std::string& file) {
   return {std::move(name), value, std::move(meaning), &file, kRequired};
 }
 
+/// Option for one shard of a sweep.
 OptionRow shard_row(std::string& shard) {
   const auto take = [&shard](const std::string& text) -> std::string {
     if (!run::parse_shard(text)) return "I/N with 1 <= I <= N, like 3/7";

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Parts of C++20 that the library of Emscripten 3.1.6 (LLVM 13) lacks. Included before everything else.
+// Parts of the C++20 library that Emscripten 3.1.6 (LLVM 13) lacks. The compiler includes this file before
+// all others.
 #pragma once
 
 #include <bit>
@@ -14,7 +15,7 @@
 #include <type_traits>
 
 #if defined(_LIBCPP_VERSION) && _LIBCPP_VERSION < 14000
-namespace std {  // NOLINT(cert-dcl58-cpp): of this one library version, which does not define them
+namespace std {  // NOLINT(cert-dcl58-cpp): this version of the library does not define them
 
 template <class To, class From>
 requires(sizeof(To) == sizeof(From) && is_trivially_copyable_v<To> &&
@@ -22,10 +23,10 @@ requires(sizeof(To) == sizeof(From) && is_trivially_copyable_v<To> &&
   return __builtin_bit_cast(To, from);
 }
 
-/// The text of `value` by printf, with the fewest digits that read back the same where none are asked for.
+/// Text of `value` by printf: with the fewest digits, from `least` to `most`, that read back the same number.
 inline to_chars_result chicane_print(char* first, char* last, double value, const char* format, int least,
                                      int most) {
-  char text[400];
+  char text[400];  // longest: 309 digits, or 330 decimals, with sign and point
   int size = 0;
   for (int digits = least; digits <= most; ++digits) {
     size = snprintf(text, sizeof(text), format, digits, value);
@@ -44,15 +45,16 @@ inline to_chars_result to_chars(char* first, char* last, double value, chars_for
 }
 
 inline to_chars_result to_chars(char* first, char* last, double value, chars_format format) {
-  if (format == chars_format::scientific) return chicane_print(first, last, value, "%.*e", 0, 17);
-  return chicane_print(first, last, value, "%.*f", 0, 330);
+  constexpr int kMostDigits = 17, kMostDecimals = 330;  // enough for any double above 1e-307
+  if (format == chars_format::scientific) return chicane_print(first, last, value, "%.*e", 0, kMostDigits);
+  return chicane_print(first, last, value, "%.*f", 0, kMostDecimals);
 }
 
 inline to_chars_result to_chars(char* first, char* last, double value) {
   return chicane_print(first, last, value, "%.*g", 1, 17);
 }
 
-/// A decimal number, as from_chars takes it: no space, no plus sign, no hexadecimal.
+/// Reads a decimal number as from_chars does: no space, no plus sign, no hexadecimal.
 inline from_chars_result from_chars(const char* first, const char* last, double& value) {
   const string text(first, last);
   const size_t size = text.find_first_not_of("0123456789+-.eEinfatyINFATY");

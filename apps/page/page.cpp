@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A run inside a browser's worker, without a server program: functions that worker.js calls.
+// Run inside a worker of a browser, without a server program: functions that worker.js calls.
 #include <emscripten.h>
 #include <link.h>
 
@@ -16,8 +16,8 @@
 
 namespace chicane::protocol {
 
-// Replace protocol/foreign_tracks.cpp and yaml_tree.cpp: the page reads its own files only, and has no
-// library for images, XML and YAML.
+// Replacements for protocol/foreign_tracks.cpp and yaml_tree.cpp: the page reads its own files only, and has
+// no library for images, XML and YAML.
 std::span<const TrackFormat> foreign_tracks() noexcept { return {}; }
 std::string_view road_kind(std::string_view) noexcept { return "table of points"; }
 Result<YamlTree> parse_yaml(std::string_view text, const std::string& file) {
@@ -28,8 +28,8 @@ Result<YamlTree> parse_yaml(std::string_view text, const std::string& file) {
 
 namespace chicane {
 
-// Replace recording/recorder.cpp, live/run_log.cpp and live/run_limit.cpp: a page has none of these
-// listeners, so nothing calls them.
+// Replacements for recording/recorder.cpp, live/run_log.cpp and live/run_limit.cpp, which a page does not
+// use: nothing calls them.
 void recording::Recorder::record(const telemetry::Frame&) noexcept {}
 void recording::Recorder::record(const telemetry::CompletedLap&) noexcept {}
 void recording::Recorder::record(const telemetry::Change&) noexcept {}
@@ -39,7 +39,7 @@ std::shared_ptr<const lap_time::LimitAnswer> live::RunLimit::news() noexcept { r
 
 }  // namespace chicane
 
-/// A page is one file: there are no loaded ones whose build ids could be listed.
+/// Replacement for the list of loaded libraries: a page has none.
 extern "C" int dl_iterate_phdr(int (*)(dl_phdr_info*, std::size_t, void*), void*) { return 0; }
 
 using namespace chicane;
@@ -50,14 +50,16 @@ EM_JS(void, post_to_page, (const char* bytes, int size, bool binary),
 
 namespace {
 
-std::unique_ptr<live::WorkerRun> worker_run;
-std::string answer;  // result of the last call that returns a text
+std::unique_ptr<live::WorkerRun> worker_run;  // null before page_begin()
+std::string answer;                           // result of the last call that returns a text
 
+/// Keeps a text for worker.js, valid until the next call.
 const char* tell(std::string text) {
   answer = std::move(text);
   return answer.c_str();
 }
 
+/// Bytes of worker.js as text.
 std::string_view view(const char* bytes, int size) { return {bytes, static_cast<std::size_t>(size)}; }
 
 }  // namespace
@@ -76,17 +78,20 @@ EMSCRIPTEN_KEEPALIVE const char* page_begin() {
   return tell("");
 }
 
+/// Begins the connection with the page. Pre, here and below: page_begin() was successful.
 EMSCRIPTEN_KEEPALIVE void page_connect() { worker_run->connect(); }
 
+/// Takes a message from the page.
 EMSCRIPTEN_KEEPALIVE void page_receive(const char* bytes, int size, bool binary) {
   worker_run->receive(view(bytes, size), binary);
 }
 
+/// Takes in that the page has processed `count` messages.
 EMSCRIPTEN_KEEPALIVE void page_acknowledge(int count) {
   worker_run->acknowledge(static_cast<std::size_t>(count));
 }
 
-/// Content of a page of the run, such as "/schema.json"; null when there is none.
+/// Content of a page of the run, such as "/schema.json"; null if there is none.
 EMSCRIPTEN_KEEPALIVE const char* page_get(const char* path) {
   const std::optional<net::Content> content = worker_run->get(path);
   if (!content) return nullptr;

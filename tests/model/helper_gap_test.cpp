@@ -20,7 +20,7 @@ TEST(HelperGap, LeavesOutAsMuchWhenItIsSpread) {
   constexpr double kStep = 1e-3;
   double turned = 0.0;
   for (double heading = -1.5; heading < 1.5; heading += kStep * kRate)
-    turned += kStep * kRate * car.steer_helper * helper_left_out(car, 0.5 * kPi, heading, kRate);
+    turned += kStep * kRate * car.steer_helper * helper_left_out(car.helper_gap, 0.5 * kPi, heading, kRate);
   EXPECT_NEAR(turned, helper_gap_turn(car, kRate), 0.01 * turned);
   EXPECT_EQ(helper_gap_turn(road_car_params(), kRate), 0.0);
 }

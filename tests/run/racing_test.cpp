@@ -15,10 +15,10 @@ scenario::Scenario race_on(const char* track, const char* margin = "0.3") {
 TEST(PlanLap, IsForThoseWhoRaceOnAKnownRoad) {
   const scenario::Scenario race = race_on("oval");
   const road::Track track = make_track(race).value();
-  EXPECT_TRUE(races(race));
+  EXPECT_TRUE(race.races());
   EXPECT_EQ(plan_lap(race, nullptr).value(), nullptr) << "no road is known";
   const scenario::Scenario other = test::scenario_of();
-  EXPECT_FALSE(races(other));
+  EXPECT_FALSE(other.races());
   EXPECT_EQ(plan_lap(other, &track).value(), nullptr);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `chicane campaign`: faults, alone and in pairs, at each moment of a flying lap.
+// `chicane campaign`: drives faults, alone and in pairs, at moments of a flying lap, and counts how often the
+// car leaves the road.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,18 +28,22 @@ namespace {
 using sweep::CampaignGroup;
 using sweep::CampaignTrial;
 
-/// All trials of one fault or pair and duration, with one car and preset, the tracks together.
+/// Row of the table: all trials of one fault or pair and one duration, with one car and preset, on all
+/// tracks.
 struct Row {
-  std::string car{}, preset{}, fault{}, lasts{};
-  std::int64_t trials = 0, off = 0, off_anyway = 0, lasting = 0, standing = 0;
-  double least_edge = std::numeric_limits<double>::infinity();  ///< [m]
+  std::string car{}, preset{}, fault{}, lasts{};  ///< as in CampaignGroup
+  std::int64_t trials = 0, off = 0;        ///< numbers of trials, and of those off the road by the fault
+  std::int64_t off_anyway = 0;             ///< trials off the road also without the fault
+  std::int64_t lasting = 0, standing = 0;  ///< trials with a lasting fault, and cars that stand in the end
+  double least_edge = std::numeric_limits<double>::infinity();  ///< gap to the edge in the worst trial [m]
   double duration = 0.0;                                        ///< duration of the faults [s]
-  std::string worst{};                                          ///< the command that drives that trial
-  bool is_worst_anyway = false;                                 ///< off the road even without the fault
+  std::string worst{};                                          ///< command of the worst trial
+  bool is_worst_anyway = false;  ///< the worst trial is off the road also without the fault
 
   [[nodiscard]] auto key() const { return std::tie(car, preset, fault, lasts); }
 
-  /// Off the road by the fault comes before off the road anyway.
+  /// Counts a trial. The worst one has the least gap; a trial off the road by the fault is worse than one
+  /// that is off the road anyway.
   void add(const CampaignTrial& trial, const std::string& command) {
     ++trials;
     duration = trial.duration;
@@ -55,16 +60,19 @@ struct Row {
       is_worst_anyway = trial.is_off_anyway;
     }
   }
+  /// Cell of the column "standing".
   [[nodiscard]] std::string standing_text() const {
     return lasting == 0 ? std::string("–") : fmt::format("{} of {}", standing, lasting);
   }
   [[nodiscard]] std::string name() const { return fmt::format("{} {} {} {}", car, preset, fault, words()); }
   [[nodiscard]] bool is_lasting() const { return duration >= run::kLasting; }
+  /// Duration in words.
   [[nodiscard]] std::string words() const {
     return is_lasting() ? std::string("lasting") : number_text(duration) + " s";
   }
 };
 
+/// Rows of all groups, in the order of the groups.
 std::vector<Row> rows_of(const std::vector<CampaignGroup>& groups, const sweep::Settings& settings) {
   std::vector<Row> rows;
   for (const CampaignGroup& group : groups) {
@@ -80,6 +88,7 @@ std::vector<Row> rows_of(const std::vector<CampaignGroup>& groups, const sweep::
   return rows;
 }
 
+/// Table of the rows.
 sweep::ResultTable table_of(const std::vector<Row>& rows) {
   using protocol::Json;
   sweep::ResultTable table({"car=car", "preset=preset", "fault=fault", "for{>}", "for_s=", "trials=trials{>}",
@@ -92,6 +101,7 @@ sweep::ResultTable table_of(const std::vector<Row>& rows) {
   return table;
 }
 
+/// Prints the command of the worst trial of each row with a car off the road.
 void print_worst(const std::vector<Row>& rows, const char* indent) {
   for (const Row& row : rows)
     if (row.off + row.off_anyway > 0)
@@ -100,7 +110,7 @@ void print_worst(const std::vector<Row>& rows, const char* indent) {
                  indent, row.worst);
 }
 
-/// The names themselves, or all that ship for the one name "all". Fails as protocol::locate() does.
+/// The names; for "all" those of the whole shelf. Fails as protocol::locate() does.
 Result<std::vector<std::string>> names_on(protocol::Shelf shelf, const std::vector<std::string>& names) {
   std::vector<std::string> all;
   if (names != std::vector<std::string>{"all"}) {
@@ -112,6 +122,7 @@ Result<std::vector<std::string>> names_on(protocol::Shelf shelf, const std::vect
   return all;
 }
 
+/// Faults of --faults, or the default.
 Result<std::vector<std::string>> chosen_faults(const Options::Campaign& campaign) {
   std::vector<std::string> names = campaign.faults;
   if (names.empty() && campaign.has_pairs) return sweep::signal_faults();
@@ -123,6 +134,7 @@ Result<std::vector<std::string>> chosen_faults(const Options::Campaign& campaign
   return names;
 }
 
+/// Campaign of the command line.
 Result<sweep::Campaign> campaign_of(const Options& options) {
   const Options::Campaign& asked = options.campaign;
   Result<std::vector<std::string>> faults = chosen_faults(asked);
@@ -143,8 +155,8 @@ Result<sweep::Campaign> campaign_of(const Options& options) {
                          .settings = options.settings};
 }
 
-/// Says on stderr which places could not be driven, each once.
-void tell_errors(const std::vector<CampaignGroup>& groups) {
+/// Prints on stderr why groups could not be driven, each reason once.
+void print_errors(const std::vector<CampaignGroup>& groups) {
   std::vector<std::string> reported;
   for (const CampaignGroup& group : groups) {
     if (group.error.empty() || std::find(reported.begin(), reported.end(), group.error) != reported.end())
@@ -176,7 +188,7 @@ ExitCode campaign(const Options& options) {
   const std::vector<Row> rows = rows_of(groups, campaign->settings);
   print_table(options, table_of(rows));
   if (!options.is_json) print_worst(rows, options.is_markdown ? "\n\n    " : "\n  ");
-  tell_errors(groups);
+  print_errors(groups);
   const bool is_kept =
       std::none_of(rows.begin(), rows.end(), [](const Row& row) { return row.off + row.off_anyway > 0; });
   const bool are_tried = driven->progress.is_complete() &&

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `chicane claims`: tries the statements of write-ups on each lake and in each reading of speed, and writes
-// the page of verdicts or compares it. The trials are runs of one plan.
+// `chicane claims`: tries the statements of write-ups on several tracks and in several readings of speed, and
+// writes the page of verdicts or compares it. The trials are runs of one plan.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,11 +32,12 @@ using sweep::Settings;
 /// Waypoint file of the course: not shipped, tools/fetch_circuits.sh fetches it.
 constexpr std::string_view kCourseFile = "circuits/lake_track_waypoints.csv";
 
-/// Reading of a write-up's numbers: settings that say which speeds are in miles per hour.
+/// Reading of the speeds in a write-up: settings that say which of them are in miles per hour.
 struct Reading {
   std::string_view name;
   Settings settings;
 };
+/// All readings.
 const std::array<Reading, 3>& readings() {
   static const std::array<Reading, 3> kReadings{
       {{"SI", {{"cubic_mpc.speed_in_mph", "false"}, {"cubic_mpc.roll_forward_in_mph", "false"}}},
@@ -45,7 +46,7 @@ const std::array<Reading, 3>& readings() {
   return kReadings;
 }
 
-/// The reading that the claim's preset sets.
+/// Reading of the claim's preset.
 const Reading& own_reading(const Claim& claim) {
   const auto scenario = sweep::scenario_of(claim.settings);
   const auto is_set = [&](const char* key) {
@@ -55,18 +56,20 @@ const Reading& own_reading(const Claim& claim) {
   return readings()[is_throughout ? 2 : is_set("cubic_mpc.speed_in_mph") ? 1 : 0];
 }
 
-/// Track on which claims are tried: in all readings of speed, or in the reading of the claim's preset alone.
+/// Track on which claims are tried.
 struct Lake {
-  std::string_view name;
-  std::string track;
-  bool is_in_all_readings = true;
-  bool is_there = true;
+  std::string_view name;           ///< name in the page
+  std::string track;               ///< name or file
+  bool is_in_all_readings = true;  ///< false: tried in the reading of the claim's preset alone
+  bool is_there = true;            ///< false: its file is missing
 
+  /// Whether a claim is tried on it in a reading.
   [[nodiscard]] bool takes(const Claim& claim, const Reading& reading) const {
     return is_there && (is_in_all_readings || reading.name == own_reading(claim).name);
   }
 };
 constexpr std::size_t kLakes = 3;
+/// All tracks; verdicts count the first two, which ship.
 const std::array<Lake, kLakes>& lakes() {
   static const std::array<Lake, kLakes> kAll = [] {
     std::error_code error;
@@ -78,8 +81,8 @@ const std::array<Lake, kLakes>& lakes() {
   return kAll;
 }
 
-/// Claims of all files in the folder, sorted by file name; `wanted`: ids to keep, empty: all. Where the
-/// default folder is not there, the one of the installation.
+/// Claims of all files in a folder, sorted by file name. `wanted`: ids to keep; empty: all. Without the
+/// default folder, those of the installation.
 Result<std::vector<Claim>> read_claims(const std::string& folder, const std::vector<std::string>& wanted) {
   std::vector<std::string> folders, files;
   if (folder == Options::Claims{}.folder)
@@ -111,7 +114,7 @@ Result<std::vector<Claim>> read_claims(const std::string& folder, const std::vec
   return claims;
 }
 
-/// Settings of one case on one lake. The claim's settings replace the reading's.
+/// Settings of one case on one track in one reading. Settings of the claim win over those of the reading.
 Settings settings_of(const Claim& claim, const sweep::Case& each, const Lake& lake, const Reading& reading) {
   Settings settings{{"guard.mode", "off"}, {"laps", "3"}, {"time_limit_s", "400"}, {"track", lake.track}};
   settings.insert(settings.end(), reading.settings.begin(), reading.settings.end());
@@ -120,12 +123,12 @@ Settings settings_of(const Claim& claim, const sweep::Case& each, const Lake& la
   return settings;
 }
 
-/// Runs by their command: claims that share a command share its run.
+/// Runs of all claims, by their command: claims with equal commands share a run.
 class Trials {
  public:
   void add(const Settings& settings) { wanted_.emplace(sweep::command_of(settings), settings); }
 
-  /// Drives all added runs. False: stopped before the end.
+  /// Drives all added runs. False if they were stopped.
   Result<bool> drive(int jobs, const std::string& results, const std::atomic<bool>& stop) {
     sweep::Axis axis = sweep::list_axis("trial", {});
     axis.size = wanted_.size();
@@ -147,18 +150,21 @@ class Trials {
     return driven->progress.is_complete();
   }
 
+  /// Line of results of a run. Pre: it was driven.
   [[nodiscard]] const protocol::Json& of(const Settings& settings) const {
     return lines_.at(sweep::command_of(settings));
   }
 
+  /// Added runs by command.
  private:
   std::map<std::string, Settings> wanted_;
-  std::map<std::string, protocol::Json> lines_;
+  std::map<std::string, protocol::Json> lines_;  ///< lines of results by command
 };
 
-/// Whether a claim holds on a lake, for each reading; none where it is not tried.
+/// Whether a claim holds on one track, for each reading; none for a reading that is not tried.
 using Marks = std::array<std::optional<bool>, 3>;
 
+/// Marks of a claim on a track.
 Marks marks_of(const Claim& claim, const Trials& trials, const Lake& lake) {
   Marks marks;
   for (std::size_t r = 0; r < readings().size(); ++r) {
@@ -171,6 +177,7 @@ Marks marks_of(const Claim& claim, const Trials& trials, const Lake& lake) {
   return marks;
 }
 
+/// Marks as text: "yes · no · yes".
 std::string cell_of(const Marks& marks) {
   std::string cell;
   for (const auto& mark : marks)
@@ -178,7 +185,8 @@ std::string cell_of(const Marks& marks) {
   return cell;
 }
 
-/// Verdict in words: true, false, not reproduced with our values, or what the outcome depends on.
+/// Verdict in words: true, false, not reproduced with our values, or what the outcome depends on. `lakeside`,
+/// `original`: cells of the two tracks that ship.
 std::string verdict_of(const Claim& claim, const std::string& lakeside, const std::string& original) {
   const std::string all = lakeside + original;
   if (all.find("no") == std::string::npos) return "**true**";
@@ -191,13 +199,15 @@ std::string verdict_of(const Claim& claim, const std::string& lakeside, const st
   return is_even(lakeside) && is_even(original) ? "depends on the lake" : "depends on lake and reading";
 }
 
+/// Number with three or four digits; a dash if it was not measured.
 std::string figure(double value) {
   return std::isnan(value)
              ? "–"
              : number_text(std::fabs(value) < 1e-9 ? 0.0 : value, std::fabs(value) >= 100.0 ? 4 : 3);
 }
 
-/// Smallest and largest value of a grid's clean points: "12 of 15 clean, least 7/0.1: 0.219, most ...".
+/// Smallest and largest value of a column among the clean points of a grid: "12 of a grid of 15 clean, least
+/// 7/0.1: 0.219, most ...".
 std::string grid_figures(const Claim& claim, const Trials& trials, const Lake& lake, const Reading& reading,
                          const std::string& column) {
   std::vector<std::pair<double, std::string>> clean;
@@ -213,7 +223,7 @@ std::string grid_figures(const Claim& claim, const Trials& trials, const Lake& l
                      least->second, figure(least->first), most->second, figure(most->first));
 }
 
-/// Figures of a claim on one lake in one reading: "N25: 50.7, N40: 69.8".
+/// Figures of a claim on one track in one reading: "N25: 50.7, N40: 69.8".
 std::string figures_of(const Claim& claim, const Trials& trials, const Lake& lake, const Reading& reading) {
   std::string text;
   for (const std::string& column : claim.shows) {
@@ -228,7 +238,7 @@ std::string figures_of(const Claim& claim, const Trials& trials, const Lake& lak
   return text;
 }
 
-/// Cell of the existing page, for a lake whose file is missing; `column` 0 is the id.
+/// Cell of the existing page, for a track whose file is missing. `column`: index; 0 is the id.
 std::string older_cell(const std::string& page, const std::string& id, int column) {
   const std::size_t row = page.find(fmt::format("\n| {} |", id));
   if (row == std::string::npos) return "";
@@ -238,13 +248,12 @@ std::string older_cell(const std::string& page, const std::string& id, int colum
   return end == std::string::npos || end < at + 3 ? "" : page.substr(at + 2, end - at - 3);
 }
 
-/// The statement, with the write-up's own words if they were found.
+/// Statement in our words, with the quotation if there is one.
 std::string statement_of(const Claim& claim) {
   return claim.quotes.empty() ? claim.says : fmt::format("{}: “{}”", claim.says, claim.quotes);
 }
 
-/// Row of the page: id, statement, verdict, a cell for each lake, figures. The verdict counts the shipped
-/// lakes.
+/// Row of the page: id, statement, verdict, a cell for each track, figures.
 std::vector<protocol::Json> row_of(const Claim& claim, const Trials& trials, const std::string& older) {
   if (!claim.is_tried()) return {claim.id, statement_of(claim), claim.found, "", "", "", claim.see};
   const auto& all = lakes();
@@ -261,7 +270,7 @@ std::vector<protocol::Json> row_of(const Claim& claim, const Trials& trials, con
           figures_of(claim, trials, all[0], own_reading(claim))};
 }
 
-/// Markdown tables, one for each write-up.
+/// Tables of the page, one for each write-up. `older`: the existing page.
 std::string rows_of(const std::vector<Claim>& claims, const Trials& trials, const std::string& older) {
   std::vector<std::string> columns{"", "statement", "verdict"};
   for (const Lake& lake : lakes()) columns.emplace_back(lake.name);
@@ -275,7 +284,7 @@ std::string rows_of(const std::vector<Claim>& claims, const Trials& trials, cons
   return text;
 }
 
-/// Report on a few claims: conditions, figures on each lake, and the command of each run.
+/// Report on single claims: conditions, figures on each track, and the command of each run.
 std::string details_of(const std::vector<Claim>& claims, const Trials& trials) {
   std::string text;
   for (const Claim& claim : claims) {
@@ -303,7 +312,7 @@ std::string details_of(const std::vector<Claim>& claims, const Trials& trials) {
   return text;
 }
 
-constexpr std::string_view kBegin = "<!-- claims: chicane claims -->\n";
+constexpr std::string_view kBegin = "<!-- claims: chicane claims -->\n";  // the tables follow it on the page
 
 /// Line of a page that begins with `start`.
 std::string line_with(const std::string& page, const std::string& start) {
@@ -311,6 +320,7 @@ std::string line_with(const std::string& page, const std::string& start) {
   return row == std::string::npos ? "no such row" : page.substr(row + 1, page.find('\n', row + 1) - row - 1);
 }
 
+/// Compares the page with new rows, and prints the differences.
 ExitCode compare(const std::string& file, const std::string& older, const std::string& rows,
                  const std::vector<Claim>& claims) {
   int different = 0;

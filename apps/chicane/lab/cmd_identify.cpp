@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `chicane identify`: estimates a car's parameters from logs, starting from a shipped car, and writes the car
-// file and the page.
+// `chicane identify`: estimates the parameters of a car from logs, beginning with a given car or one of the
+// shelf, and writes the car file and the page.
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -38,8 +38,9 @@ namespace {
 using identify::Estimate;
 using identify::Identification;
 
-constexpr std::size_t kMostColumns = 1000;  // limit of a column's index
+constexpr std::size_t kMostColumns = 1000;  // limit of the index of a column: bounds memory; chosen
 
+/// Options of the reader of logs by the command line.
 Result<identify::LogOptions> log_options(const Options::Identify& options) {
   identify::LogOptions log{.odom_topic = options.odom_topic, .drive_topic = options.drive_topic};
   for (const std::string& column : options.columns) {
@@ -61,17 +62,21 @@ Result<identify::LogOptions> log_options(const Options::Identify& options) {
   return log;
 }
 
-/// Progress with the time left. Ends at an interrupt and at the end of a time budget.
+/// Progress of the search with the time left. The search ends at an interrupt, and at the end of its time
+/// budget.
 class Share {
  public:
+  Share(const std::atomic<bool>& wants_stop, double budget_s) : wants_stop_{wants_stop}, budget_{budget_s} {}
+  /// Shows the share that is done. Returns whether the search goes on.
   bool operator()(double done) {
     const auto percent = static_cast<std::uint64_t>(100.0 * done);
     counter_.show(percent, 100, percent);
     return goes_on();
   }
   [[nodiscard]] bool goes_on() const { return !wants_stop_ && !is_late(); }
+  /// Whether the time budget is over.
   [[nodiscard]] bool is_late() const { return std::chrono::steady_clock::now() - begin_ > budget_; }
-  Share(const std::atomic<bool>& wants_stop, double budget_s) : wants_stop_{wants_stop}, budget_{budget_s} {}
+  /// Ends the line of progress.
   void clear() { counter_.end(); }
 
  private:
@@ -81,11 +86,12 @@ class Share {
   RunCounter counter_{"percent"};
 };
 
+/// Interval of an estimate as text.
 std::string interval(const Estimate& each) {
   return fmt::format("{} to {}", number_text(each.low, 3), number_text(each.high, 3));
 }
 
-/// Why the car should not be driven by; empty where its predictions hold.
+/// Reason not to use the car: its prediction errors; empty if the predictions are good.
 std::string doubt(const Identification& found) {
   if (found.predicts()) return {};
   const identify::PredictionError& error = found.held_out.front();
@@ -97,7 +103,9 @@ std::string doubt(const Identification& found) {
       error.position, kDegrees * error.yaw, error.ahead, most, kDegrees * most_yaw);
 }
 
+/// Sentences about what the logs do not show, a line each.
 std::string advice(const Identification& found) {
+  constexpr double kOffCentre = 0.1;  // [deg] offset of the steering worth a sentence; chosen
   std::string text;
   if (!found.has_pedal)
     text += "The log has no pedal: drive, brakes and drag are those of the car it began with.\n";
@@ -117,13 +125,15 @@ std::string advice(const Identification& found) {
         "something of this car. The intervals hold for the model, and may miss the car's own numbers.\n",
         found.correlation);
   for (const Estimate& each : found.estimates) {
-    if (each.key == "steer_offset_deg" && each.is_excited && (each.low > 0.1 || each.high < -0.1))
+    if (each.key == "steer_offset_deg" && each.is_excited &&
+        (each.low > kOffCentre || each.high < -kOffCentre))
       text += fmt::format("The wheels point {} deg {} when 0 is asked: correct it where commands are sent.\n",
                           number_text(std::fabs(each.value), 2), each.value > 0.0 ? "left" : "right");
   }
   return text;
 }
 
+/// Result as text.
 std::string table_of(const Identification& found, const std::string& logs) {
   std::string text = fmt::format("{:.0f} s of driving from {}\n\n{:<26} {:>10} {:>22}  {:>8}\n", found.driven,
                                  logs, "", "found", "95 % interval", "assumed");
@@ -144,6 +154,7 @@ std::string table_of(const Identification& found, const std::string& logs) {
   return text;
 }
 
+/// Result as JSON.
 std::string json_of(const Identification& found) {
   nlohmann::ordered_json json;
   json["driven_s"] = found.driven;
@@ -172,12 +183,13 @@ std::string json_of(const Identification& found) {
   return json.dump(2) + "\n";
 }
 
+/// Whether the plant of a scenario has four wheels.
 bool has_wheels(const scenario::Scenario& scenario) {
   return scenario.plant == sim::DoubleTrack::kName || scenario.plant == sim::DoubleTrack::kRoadCar;
 }
 
-/// A plant of four wheels becomes one with the model that was found; what turns by a helper stays the
-/// start's.
+/// Gives a plant of four wheels the found parameters. Other plants, and cars with a steer helper, stay as
+/// they are.
 void take_plant(scenario::Scenario& scenario, const identify::Wheels& wheels) {
   if (!has_wheels(scenario) || scenario.vehicle.steer_helper > 0.0) return;
   scenario.plant = sim::DoubleTrack::kName;
@@ -186,7 +198,7 @@ void take_plant(scenario::Scenario& scenario, const identify::Wheels& wheels) {
   scenario.plant_params.load_lag = wheels.load_lag;
 }
 
-/// The car file: the model as it was found, and a plant that has it.
+/// Car file with the found model, and a plant with the same parameters. `scenario`: start of the search.
 std::string to_car(const Identification& found, scenario::Scenario scenario, const std::string& logs) {
   std::string text =
       fmt::format("# {}, identified from {:.0f} s of {}\n", scenario.vehicle.name, found.driven, logs);
@@ -236,25 +248,26 @@ std::string to_car(const Identification& found, scenario::Scenario scenario, con
   return text;
 }
 
+/// Car of the shelf.
 struct ShelfCar {
   std::string name;
   model::VehicleParams vehicle;
-  double ratio = 0.0;  ///< logarithm of its wheelbase over the logs'
+  double ratio = 0.0;  ///< size of the logarithm of its wheelbase over the wheelbase of the logs
 };
 
-/// Slow steering of a shelf car says nothing of another one, and the search does not get away from it: at
-/// least what an ordinary car has, in full size.
+/// Raises the steering rate of a starting car to that of an ordinary car, because the search does not find a
+/// higher rate from a low one.
 void forget_slow_steering(model::VehicleParams& car) {
-  constexpr double kUsualRate = 90.0 * kPi / 180.0;  // [rad/s]
+  constexpr double kUsualRate = 90.0 * kPi / 180.0;  // [rad/s] in full size; chosen
   car.steer_rate_limit = std::max(car.steer_rate_limit, kUsualRate * model::Similarity(car).time());
 }
 
-/// Cars of the shelf, sorted by the difference of their wheelbase.
+/// Cars of the shelf, the most similar wheelbase first.
 std::vector<ShelfCar> shelf_by_wheelbase(double wheelbase) {
   std::vector<ShelfCar> cars;
   for (const protocol::Entry& entry : protocol::entries(protocol::Shelf::kCar)) {
     auto car = protocol::compose({.scenario_file = {}, .settings = {{"car", entry.name}}});
-    // A helper turns the car along: its wheelbase says little of how it turns, and only simulators have one.
+    // A steer helper turns the car, too, so that its wheelbase says little; and only simulators have one.
     if (!car || car->vehicle.steer_helper > 0.0) continue;
     forget_slow_steering(car->vehicle);
     cars.push_back({entry.name, car->vehicle, std::fabs(std::log(car->vehicle.wheelbase() / wheelbase))});
@@ -263,11 +276,11 @@ std::vector<ShelfCar> shelf_by_wheelbase(double wheelbase) {
   return cars;
 }
 
-/// Shelf car that the search begins with unless one is given: among the cars that turn as the logs do, the
-/// best fit of a rough search.
+/// Car of the shelf with which the search begins without --car: of the cars that turn as in the logs, the one
+/// with the best rough fit.
 Result<std::string> car_for(const std::vector<identify::DriveLog>& logs, const std::function<bool()>& go_on) {
-  constexpr double kNear = 0.35;         // logarithm of the ratio of wheelbases
-  constexpr std::size_t kMostTried = 4;  // limit of shipped cars that are tried as a start
+  constexpr double kNear = 0.35;         // largest ShelfCar::ratio of a tried car; chosen
+  constexpr std::size_t kMostTried = 4;  // limit of tried cars; chosen
   const double wheelbase = identify::turning_wheelbase(logs);
   const std::vector<ShelfCar> cars =
       std::isfinite(wheelbase) ? shelf_by_wheelbase(wheelbase) : std::vector<ShelfCar>{};
@@ -295,14 +308,14 @@ Result<std::string> car_for(const std::vector<identify::DriveLog>& logs, const s
   return best->name;
 }
 
-/// Logs of other programs do not say whose they are; recordings of ours are of the car of the settings.
-bool is_nobodys(const std::vector<identify::DriveLog>& logs, const Options& options) {
+/// Whether the car of the logs is not known: they are logs of other programs, and there is no --car.
+bool is_of_unknown_car(const std::vector<identify::DriveLog>& logs, const Options& options) {
   return !has_setting(options, "car") &&
          std::none_of(logs.begin(), logs.end(),
                       [](const identify::DriveLog& log) { return log.is_centre_of_mass; });
 }
 
-/// Expected wheels: the start plant's, if it has four.
+/// Expected effects of the wheels: those of the plant of the start, if it has four wheels.
 identify::Wheels wheels_of(const scenario::Scenario& start) {
   if (!has_wheels(start)) return {};
   const sim::DoubleTrackParams plant =
@@ -315,7 +328,8 @@ identify::Wheels wheels_of(const scenario::Scenario& start) {
           .drive = {plant.traction_slip_start, plant.traction_slip_end}};
 }
 
-Result<void> identify_and_tell(const Options& options) {
+/// Runs `chicane identify`.
+Result<void> identify_and_report(const Options& options) {
   static std::atomic<bool> wants_stop{false};  // static: must outlive the last signal
   catch_interrupts(wants_stop);
   Result<scenario::Scenario> start = protocol::compose({.scenario_file = {}, .settings = options.settings});
@@ -334,7 +348,7 @@ Result<void> identify_and_tell(const Options& options) {
     names += (names.empty() ? "" : ", ") + std::filesystem::path(file).filename().string();
   }
   Share share(wants_stop, options.identify.budget_s);
-  if (is_nobodys(logs, options)) {
+  if (is_of_unknown_car(logs, options)) {
     const Result<std::string> car = car_for(logs, [&] { return share.goes_on(); });
     if (!car) return fail(car.error());
     auto settings = options.settings;
@@ -379,7 +393,7 @@ Result<void> identify_and_tell(const Options& options) {
 }  // namespace
 
 ExitCode identify_car(const Options& options) {
-  const Result<void> done = identify_and_tell(options);
+  const Result<void> done = identify_and_report(options);
   return done ? kSuccess : report(done.error());
 }
 

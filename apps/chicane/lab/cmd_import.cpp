@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `chicane import`: reads a road from a file of any known format, checks that it can be driven, and writes it
-// as CSV with a preview of what was recognised.
+// `chicane import`: reads a road from a file of any known format, checks it, and writes it as CSV with a
+// preview of what was recognised.
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -28,18 +28,19 @@
 #include "progress.hpp"
 
 namespace chicane::apps {
-
 namespace {
 
 using protocol::ReportDocument;
 
-constexpr int kSteps = 800;                // samples along the road in the preview
+// Detail of the preview; chosen: as much as a screen shows.
+constexpr int kSteps = 800;                // samples along the road
 constexpr double kCells = 500.0;           // cells along the longer side of a map
-constexpr std::size_t kMostPoints = 4000;  // limit of drawn points of a file
+constexpr std::size_t kMostPoints = 4000;  // limit of drawn points of the file
 
 /// State of a place on a map.
 enum Place { kWall, kFree, kUnknown, kOutside };
 
+/// State of a map at a position in W.
 Place place_in(const protocol::OccupancyMap& map, const survey::FreeSpace& space, const Vec2& at) {
   const Vec2 cell = space.to_cells(at);
   const int column = static_cast<int>(std::floor(cell.x())), row = static_cast<int>(std::floor(cell.y()));
@@ -50,7 +51,7 @@ Place place_in(const protocol::OccupancyMap& map, const survey::FreeSpace& space
   return dark < map.free && !map.is_unknown(column, y) ? kFree : kUnknown;
 }
 
-/// Draws the map between two corners as rectangles one step high.
+/// Draws the map between two corners, as rectangles of the height of a step.
 void add_map(ReportDocument& document, const protocol::OccupancyMap& map, const Vec2& low, const Vec2& high) {
   const survey::FreeSpace space{.width = map.image.width,
                                 .height = map.image.height,
@@ -75,6 +76,7 @@ void add_map(ReportDocument& document, const protocol::OccupancyMap& map, const 
   document.add_series("cells", "soft", "wall", cells[kWall]);
 }
 
+/// Coordinates x, y, x, y, … of positions.
 std::vector<double> numbers_of(const std::vector<Vec2>& places) {
   std::vector<double> numbers;
   for (const Vec2& place : places) numbers.insert(numbers.end(), {place.x(), place.y()});
@@ -96,10 +98,8 @@ void add_start(ReportDocument& document, const road::Track& track, double extent
                                   tip - 0.3 * reach * (along + 0.6 * across)}));
 }
 
-}  // namespace
-
-/// Preview document (protocol/json.hpp) with `words` and a drawing of what was recognised: the map or the
-/// points of the file, edges, line, start and direction.
+/// HTML document (protocol/json.hpp) of the preview: `words`, and a drawing of the map or the points of the
+/// file, edges, line, start and direction.
 std::string preview_of(const road::Track& track, const protocol::TrackFile& content,
                        const std::string& words) {
   std::vector<Vec2> line, left, right, points;
@@ -134,31 +134,32 @@ std::string preview_of(const road::Track& track, const protocol::TrackFile& cont
   return document.text();
 }
 
-namespace {
-
 using protocol::TrackFile;
 using protocol::TrackReadOptions;
 
-constexpr double kModelRoad = 3.0;     // narrower roads, on average, are for model cars [m]
-constexpr double kModelNarrow = 2.5;   // roads with a narrower place are, too [m]
-constexpr double kWideRoad = 30.0;     // wider roads may be in another unit [m]
-constexpr double kModelScale = 0.1;    // scale of a model road's assumed noise and spacing
-constexpr double kPointsAcross = 5.0;  // width over the spacing of the points
+// Sizes by which a road is judged; chosen.
+constexpr double kModelRoad = 3.0;     // [m] mean width below which a road is for model cars
+constexpr double kModelNarrow = 2.5;   // [m] least width below which a road is for model cars
+constexpr double kWideRoad = 30.0;     // [m] mean width above which the file may be in another unit
+constexpr double kModelScale = 0.1;    // scale of assumed noise and spacing on a road for model cars
+constexpr double kPointsAcross = 5.0;  // width of the road over the spacing of written points
 
-/// Road as read, with the figures of the report.
+/// Road of the file, with the figures of the report.
 struct Imported {
   TrackFile content;
   road::Track track;
-  std::string kind;         ///< format of the file: "occupancy map"
-  double spacing = 0.0;     ///< distance between the written points [m]
-  double mean_width = 0.0;  ///< mean width of the road [m]
-  road::PointFit fit{};
+  std::string kind;                      ///< format of the file: "occupancy map"
+  double spacing = 0.0;                  ///< distance between the written points [m]
+  double mean_width = 0.0;               ///< mean width of the road [m]
+  road::PointFit fit{};                  ///< distance of the file's points from the line
   double narrowest = 1e9, widest = 0.0;  ///< least and largest width [m]
   double sharpest = 0.0;                 ///< largest curvature [1/m]
 
+  /// Whether the road is for model cars.
   [[nodiscard]] bool is_model() const noexcept { return mean_width < kModelRoad || narrowest < kModelNarrow; }
 };
 
+/// Options of the reader by the command line; `scale`: of assumed noise and spacing.
 TrackReadOptions read_options(const Options::Import& import, double scale) {
   using Direction = TrackReadOptions::Direction;
   TrackReadOptions options{.scale = scale,
@@ -175,6 +176,7 @@ TrackReadOptions read_options(const Options::Import& import, double scale) {
   return options;
 }
 
+/// Mean width of the road at the points of a file [m].
 double mean_width(const TrackFile& content) {
   double sum = 0.0;
   for (const road::TrackPoint& point : content.points) sum += point.left + point.right;
@@ -194,6 +196,7 @@ void measure(Imported& road) {
   }
 }
 
+/// Reads and measures the road.
 Result<Imported> read_road(const Options::Import& import) {
   const Result<std::string> text = protocol::read_file(import.file);
   if (!text) return fail(text.error());
@@ -221,7 +224,7 @@ Result<Imported> read_road(const Options::Import& import) {
   return road;
 }
 
-/// The smooth line as evenly spaced points, which need no further smoothing.
+/// Smoothed line as evenly spaced points, which need no further smoothing.
 TrackFile resampled(const Imported& road) {
   TrackFile out;
   out.is_closed = road.track.centre().is_closed();
@@ -241,6 +244,7 @@ TrackFile resampled(const Imported& road) {
   return out;
 }
 
+/// Figures of the road in words.
 std::string in_words(const Imported& road) {
   return fmt::format(
       "{} road, {:.{}f} m long, {:.2f} to {:.2f} m wide, {}; {} points of the file are {:.3f} m from its "
@@ -251,6 +255,7 @@ std::string in_words(const Imported& road) {
       road.content.points.size(), road.fit.rms, road.fit.most);
 }
 
+/// Figures of the road as JSON.
 std::string in_json(const Imported& road) {
   nlohmann::ordered_json json;
   json["is_closed"] = road.track.centre().is_closed();
@@ -278,7 +283,8 @@ std::string description_of(const Imported& road, const std::string& file) {
   return text;
 }
 
-Result<void> import_and_tell(const Options& options) {
+/// Runs `chicane import`.
+Result<void> import_and_report(const Options& options) {
   const Options::Import& import = options.import_;
   // Check the names of all outputs before any work.
   if (Result<void> named = check_page_name("--preview", import.preview); !named) return named;
@@ -319,7 +325,7 @@ Result<void> import_and_tell(const Options& options) {
 }  // namespace
 
 ExitCode import_road(const Options& options) {
-  const Result<void> done = import_and_tell(options);
+  const Result<void> done = import_and_report(options);
   return done ? kSuccess : report(done.error());
 }
 

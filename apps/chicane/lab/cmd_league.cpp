@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// `chicane league`: our controllers and programs of others on the same tracks, in the same cars. Ours are
-// driven as a sweep, others in real time over their own protocol; the results become a page, CSV, Markdown
-// and JSON.
+// `chicane league`: compares our controllers and programs of others on the same tracks, in the same cars.
+// Ours are driven as a sweep, others in real time over their own protocol; the results become a page, CSV,
+// Markdown and JSON.
 #include <arpa/inet.h>
 #include <fmt/format.h>
 #include <sys/socket.h>
@@ -42,10 +42,12 @@ using Clock = std::chrono::steady_clock;
 using sweep::ExternalTrial;
 using sweep::League;
 
-constexpr std::chrono::milliseconds kPollPeriod{100};  // period of reading the simulator's output
-// DDS domains of ROS 2 programs, by process number. DDS has 0 to 232; people use the low ones.
+constexpr std::chrono::milliseconds kPollPeriod{100};  // between two looks at the simulator's output; chosen
+// First DDS domain of ROS 2 programs, and number of domains, chosen by process number. DDS has 0 to 232;
+// people use the low ones.
 constexpr int kRosDomain = 110, kRosDomains = 80;
 
+/// Last line of the output of a program.
 std::string last_line(const std::string& text) {
   const std::size_t end = text.find_last_not_of("\r\n");
   if (end == std::string::npos) return "it has said nothing";
@@ -54,9 +56,9 @@ std::string last_line(const std::string& text) {
                      end - (begin == std::string::npos ? 0 : begin + 1) + 1);
 }
 
-/// Runs a ROS 2 controller in real time: a shell starts `chicane ros --simulate` and the controller's
-/// program, both in the DDS domain `domain`. `own`: word of a shell that starts this program. Fails with kIo
-/// if no command arrives within `patience` [s], or if the simulator does not start, with its last line.
+/// Drives a car by a ROS 2 controller in real time: shells start `chicane ros --simulate` and the program of
+/// the controller, both in the DDS domain `domain`. `own`: this program as a word of a shell. kIo if no
+/// command arrives within `patience` [s], or if the simulator ends without a result.
 Result<telemetry::RunSummary> drive_ros_program(const ExternalTrial& trial, int domain,
                                                 const std::string& own, double patience,
                                                 const std::atomic<bool>& stop) {
@@ -111,8 +113,8 @@ std::string driving_program() {
   return program.empty() ? "chicane" : sweep::shell_word(program);
 }
 
-/// Starts the program, drives the car by it in real time, and ends it. Fails if it has not connected or not
-/// answered for `patience` [s].
+/// Starts a program, drives the car by it in real time, and ends it. Fails if it does not connect, or does
+/// not answer for `patience` [s].
 Result<telemetry::RunSummary> drive_program(const ExternalTrial& trial, double patience,
                                             const std::atomic<bool>& stop) {
   if (sweep::is_ros(trial))
@@ -142,8 +144,8 @@ Result<telemetry::RunSummary> drive_program(const ExternalTrial& trial, double p
   return done->run;
 }
 
-/// Runs of a league in three steps: our controllers, limits of cars on tracks, other programs. Runs whose
-/// results are in the files already are skipped.
+/// Drives a league in three steps: our controllers, limits of cars on tracks, other programs. Skips what is
+/// in the files of results already.
 class LeagueRun {
  public:
   LeagueRun(const Options& options, League league, std::string results, const std::atomic<bool>& stop)
@@ -151,6 +153,7 @@ class LeagueRun {
     beside_ = fs::path(results_).replace_extension(".beside.jsonl").string();
   }
 
+  /// Drives what is missing. Ends early if it is stopped.
   Result<void> drive() {
     Result<sweep::BesideFile> beside = sweep::BesideFile::open(beside_, league_);
     if (!beside) return fail(beside.error());
@@ -159,12 +162,14 @@ class LeagueRun {
     return options_.league.wants_programs ? drive_programs(*beside) : Result<void>{};
   }
 
+  /// Results of all files.
   [[nodiscard]] Result<sweep::LeagueResults> read() const {
     return sweep::read_results(league_, results_, beside_);
   }
   [[nodiscard]] const League& league() const { return league_; }
 
  private:
+  /// Drives our controllers.
   Result<void> drive_own(sweep::BesideFile& beside) {
     RunCounter counter;
     std::optional<Error> failure;
@@ -182,6 +187,7 @@ class LeagueRun {
     return {};
   }
 
+  /// Finds the limits of all cars on all tracks.
   Result<void> find_bounds(sweep::BesideFile& beside) {
     std::vector<std::pair<std::string, std::string>> wanted;
     for (const std::string& track : league_.tracks)
@@ -205,6 +211,7 @@ class LeagueRun {
     return failure ? fail(*failure) : Result<void>{};
   }
 
+  /// Drives the external trials.
   Result<void> drive_programs(sweep::BesideFile& beside) {
     for (const ExternalTrial& trial : league_.external_trials()) {
       if (stop_) return {};
@@ -224,14 +231,14 @@ class LeagueRun {
 
   const Options& options_;
   const League league_;
-  const std::string results_;
+  const std::string results_;  ///< file of the sweep's results
   const std::atomic<bool>& stop_;
   std::string beside_;  ///< file of sweep::BesideFile
 };
 
-constexpr std::string_view kLeagueMarker =
-    "<!-- league: chicane league -->\n";  // tables are written below it
+constexpr std::string_view kLeagueMarker = "<!-- league: chicane league -->\n";  // the tables follow it
 
+/// Writes the page, CSV, Markdown and JSON that the options ask for.
 Result<void> write_pages(const Options& options, const League& league, const sweep::LeagueResults& results) {
   if (!options.output_file.empty()) {
     const auto done = recording::write_document(options.output_file, sweep::league_document(league, results),

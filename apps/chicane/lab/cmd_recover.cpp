@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `chicane recover` and `chicane lane-change`: many starts beside the road, and the speed limit of a double
-// lane change.
+// `chicane recover`, which drives many starts beside the road; and `chicane lane-change`, which finds the
+// highest speed of a double lane change.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,25 +28,27 @@ namespace {
 using protocol::Json;
 using run::WayBackOutcome;
 
-/// All starts of one car on one track.
+/// One car on one track, with its starts and their results.
 struct CarOnTrack {
   std::string track, car;
   scenario::Scenario scenario{};
   std::vector<run::StartPose> starts{};
-  std::vector<std::pair<int, Json>> outcomes{};  ///< number of the start, and its line
+  std::vector<std::pair<int, Json>> outcomes{};  ///< number of a start from 1, and its line of results
 
+  /// Number of starts that came back to the road.
   [[nodiscard]] auto back() const {
     return std::count_if(outcomes.begin(), outcomes.end(),
                          [](const auto& each) { return each.second.at("is_back").template get<bool>(); });
   }
 };
 
-/// A time of a line; infinite where it has none.
+/// Number of a line of results; infinite for null.
 double time_in(const Json& line, const char* key) {
   const Json& value = line.at(key);
   return value.is_null() ? WayBackOutcome::kNever : value.get<double>();
 }
 
+/// What went wrong, in words.
 std::string verdict(const Json& line) {
   const double least_edge = time_in(line, "least_edge_m");
   if (least_edge < 0.0) return fmt::format("leaves it again by {:.2f} m", -least_edge);
@@ -54,7 +56,7 @@ std::string verdict(const Json& line) {
   return "comes back, and does not drive on";
 }
 
-/// The command that drives one start again.
+/// Command that drives one start again.
 std::string command_of(const Options& options, const CarOnTrack& pair, int number) {
   std::string text = fmt::format("chicane recover --tracks {} --cars {} --starts {} --seed {} --only {}",
                                  pair.track, pair.car, options.recover.starts, options.recover.seed, number);
@@ -62,6 +64,7 @@ std::string command_of(const Options& options, const CarOnTrack& pair, int numbe
   return text;
 }
 
+/// Adds the row of one kind of starts.
 void add_kind(sweep::ResultTable& table, const CarOnTrack& pair, std::string_view kind) {
   int starts = 0, back = 0;
   double slowest_back = 0.0, slowest = 0.0, farthest = 0.0;
@@ -77,6 +80,7 @@ void add_kind(sweep::ResultTable& table, const CarOnTrack& pair, std::string_vie
   if (starts > 0) table.add({pair.track, pair.car, kind, starts, back, slowest_back, slowest, farthest});
 }
 
+/// Prints the table, and the command of each start that did not come back.
 void print_table(const Options& options, const std::vector<CarOnTrack>& pairs) {
   sweep::ResultTable table({"track", "car", "start", "starts{>}", "back{>}", "back [s]{>.1}",
                             "lapping [s]{>.1}", "farthest [m]{>.1}"});
@@ -92,6 +96,7 @@ void print_table(const Options& options, const std::vector<CarOnTrack>& pairs) {
   }
 }
 
+/// Prints all results as JSON.
 void print_json(const std::vector<CarOnTrack>& pairs) {
   Json all = Json::array();
   for (const CarOnTrack& pair : pairs) {
@@ -111,6 +116,7 @@ void print_json(const std::vector<CarOnTrack>& pairs) {
   print_rows(std::move(all));
 }
 
+/// Result of a start, for its line.
 Json json_of(const WayBackOutcome& outcome) {
   const model::State& start = outcome.start.state;
   return {{"start", run::kStartKindNames[static_cast<std::size_t>(outcome.start.kind)]},
@@ -127,6 +133,7 @@ Json json_of(const WayBackOutcome& outcome) {
           {"least_edge_m", outcome.least_edge}};
 }
 
+/// Car and track with their starts.
 Result<CarOnTrack> pair_of(const Options& options, const std::string& track, const std::string& car) {
   auto settings = options.settings;
   settings.emplace_back("track", track);
@@ -142,7 +149,7 @@ Result<CarOnTrack> pair_of(const Options& options, const std::string& track, con
   return CarOnTrack{track, car, std::move(*scenario), std::move(starts)};
 }
 
-/// Pairs in the order of the plan: the starts of one turn fastest.
+/// All cars on all tracks, in the order of the plan; consecutive runs of the plan are starts of one pair.
 Result<std::vector<CarOnTrack>> pairs_of(const Options& options) {
   std::vector<CarOnTrack> pairs;
   for (const std::string& track : options.recover.tracks) {
@@ -155,6 +162,7 @@ Result<std::vector<CarOnTrack>> pairs_of(const Options& options) {
   return pairs;
 }
 
+/// Numbers of the starts to drive.
 std::vector<int> numbers_of(const Options::Recover& recover) {
   if (recover.only > 0) return {recover.only};
   std::vector<int> numbers;
@@ -162,6 +170,7 @@ std::vector<int> numbers_of(const Options::Recover& recover) {
   return numbers;
 }
 
+/// Plan with a run for each start.
 sweep::Plan plan_of(const Options& options, const std::vector<int>& numbers) {
   std::vector<std::string> texts;
   for (const int number : numbers) texts.push_back(std::to_string(number));
@@ -174,7 +183,7 @@ sweep::Plan plan_of(const Options& options, const std::vector<int>& numbers) {
   return plan;
 }
 
-/// Drives all starts; the pairs have their outcomes then.
+/// Drives all starts, and stores their results in the pairs. False if it was stopped.
 Result<bool> drive_back(const Options& options, std::vector<CarOnTrack>& pairs,
                         const std::atomic<bool>& stop) {
   const std::vector<int> numbers = numbers_of(options.recover);
@@ -214,15 +223,14 @@ ExitCode recover(const Options& options) {
 
 namespace {
 
-using protocol::Json;
-
 constexpr double kKmph = 3.6;  // km/h for 1 m/s
 
-/// Lane change of one car: its lines are planned once for all controllers.
+/// Lane change of one car, which is planned once for all controllers.
 struct CarOnCourse {
-  std::mutex mutex{};
-  std::optional<run::LaneChange> change{};
+  std::mutex mutex{};                       ///< guards `change`
+  std::optional<run::LaneChange> change{};  ///< empty: not planned yet
 
+  /// Highest speed of a controller.
   Result<run::LaneChangeLimit> find_limit(const scenario::Scenario& scenario) {
     const std::lock_guard lock(mutex);
     if (!change) {
@@ -234,6 +242,7 @@ struct CarOnCourse {
   }
 };
 
+/// Result of a car and preset, for its line.
 Json json_of(const run::LaneChangeLimit& limit) {
   return {{"entry_kmph", limit.passed_kmph},
           {"exit_kmph", kKmph * limit.passed.exit_speed},
@@ -242,6 +251,7 @@ Json json_of(const run::LaneChangeLimit& limit) {
           {"passed_above", limit.failed.has_passed()}};
 }
 
+/// What happens at the next higher speed, in words.
 std::string why_not_faster(const Json& line) {
   const Json& room = line.at("room_above_m");
   if (line.at("passed_above").get<bool>()) return "passed every speed tried";
@@ -250,7 +260,7 @@ std::string why_not_faster(const Json& line) {
              : "does not arrive";
 }
 
-/// The experiments of all runs; a mistake is reported before anything is driven.
+/// Scenarios of all runs: a mistake is reported before anything is driven.
 Result<std::vector<scenario::Scenario>> scenarios_of(const Options& options, const sweep::Plan& plan) {
   std::vector<scenario::Scenario> scenarios;
   for (std::uint64_t run = 0; run < plan.size(); ++run) {
@@ -263,7 +273,8 @@ Result<std::vector<scenario::Scenario>> scenarios_of(const Options& options, con
   return scenarios;
 }
 
-/// Cars turn fastest: threads drive different cars.
+/// Plan with a run for each preset and car. Consecutive runs are of different cars, so that threads do not
+/// wait for each other's car.
 sweep::Plan plan_of(const Options& options) {
   sweep::Plan plan{.name = "lane-change", .fixed = options.settings, .keep = {"outcome"}};
   plan.axes = {sweep::list_axis("preset", options.lane_change.presets),
@@ -271,6 +282,7 @@ sweep::Plan plan_of(const Options& options) {
   return plan;
 }
 
+/// Drives all runs.
 Result<RunLines> drive(const Options& options, const sweep::Plan& plan, const std::atomic<bool>& stop) {
   const Result<std::vector<scenario::Scenario>> scenarios = scenarios_of(options, plan);
   if (!scenarios) return fail(scenarios.error());
@@ -285,7 +297,7 @@ Result<RunLines> drive(const Options& options, const sweep::Plan& plan, const st
   return drive_runs({.plan = plan, .rule = rule}, options.jobs, options.results_file, stop);
 }
 
-/// A row for each car and preset.
+/// Table with a row for each car and preset.
 sweep::ResultTable table_of(const Options& options, const RunLines& driven) {
   const auto& [cars, presets] = options.lane_change;
   sweep::ResultTable table({"car=car", "preset=preset", "entry_kmph=[km/h]{>}", "exit_kmph=exit [km/h]{>.1}",

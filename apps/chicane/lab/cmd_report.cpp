@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Pages of recordings: a comparison, the summary of a sweep, the logs of a folder; films; and logs of other
-// programs as recordings: each sample becomes a frame.
+// `chicane report`, which makes a page of recordings or of the results of a sweep; `chicane video`, which
+// makes a film; and the conversion of logs of other programs to recordings, for both and for `chicane
+// replay`.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,20 +36,119 @@
 namespace chicane::apps {
 namespace {
 
-/// Converts a log of another program to the recording `output`: positions, speeds and commands of the car.
-/// --track gives the road for laps and progress; without it a lap ends where the car has been before. Values
-/// that the log lacks are NaN. One sentence on stderr sums up the findings. kParse for a file that is neither
-/// a ROS 2 bag with odometry nor a CSV table of a car.
-Result<void> convert_foreign_log(const std::string& file, const Options& options, const std::string& output);
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+// [s] between frames, closer samples are left out: 100 Hz are enough to look at.
+constexpr double kMinStep = 0.01;
+constexpr double kMaxGap = 2.0;  // [s] a lap with a longer gap between samples does not count; chosen
 
-/// The results of a sweep are lines of JSON, recordings are MCAP.
+/// Commands of a log in the order of time.
+class SentCommands {
+ public:
+  explicit SentCommands(const std::vector<identify::SentCommand>& commands)
+      : next_{commands.begin()}, end_{commands.end()} {}
+  /// Last command sent up to `time` [s]; NaN before the first one. Pre: times never decrease.
+  [[nodiscard]] model::Command at(double time) {
+    for (; next_ != end_ && next_->time <= time; ++next_)
+      acting_ = {.steer = next_->steer, .throttle = next_->throttle};
+    return acting_;
+  }
+
+ private:
+  std::vector<identify::SentCommand>::const_iterator next_, end_;
+  model::Command acting_{.steer = kNaN, .throttle = kNaN};
+};
+
+/// Frame with a sample as the measurement of the centre of mass, which is `ahead` [m] of the log's reference
+/// point.
+telemetry::Frame frame_of(const identify::Sample& sample, double ahead, const model::Command& command) {
+  telemetry::Frame frame{};
+  frame.measurement.x = sample.x + ahead * cos(sample.psi);
+  frame.measurement.y = sample.y + ahead * sin(sample.psi);
+  frame.measurement.psi = sample.psi;
+  frame.measurement.speed = std::fabs(sample.speed);
+  frame.measurement.steer = command.steer;
+  frame.measurement.throttle = command.throttle;
+  frame.result.command = frame.asked = frame.applied = command;
+  return frame;
+}
+
+/// Recorder of a converted log.
+Result<std::unique_ptr<recording::Recorder>> recorder_for(const std::string& output,
+                                                          const scenario::Scenario& scenario,
+                                                          const road::Track* track) {
+  protocol::Run run;
+  run.controller = run.preset = "external";
+  run.vehicle = scenario.vehicle;
+  run.mode = recording::kSimulateMode;
+  if (track != nullptr) live::describe(*track, run);
+  return recording::Recorder::create({.path = output, .run = run, .scenario = scenario, .may_wait = true});
+}
+
+/// Sentence about a converted log.
+std::string summary_of(const identify::DriveLog& log, const road::Track* track, int laps,
+                       std::size_t frames) {
+  std::string missing;
+  if (log.commands.empty()) missing += ", no commands";
+  if (!log.commands.empty() && !log.has_throttle()) missing += ", no pedal";
+  if (track == nullptr) missing += ", no road (--track)";
+  return fmt::format("{}: a log of another program, {:.1f} s, {} samples shown, {} laps{}", log.source,
+                     log.samples.back().time - log.samples.front().time, frames, laps, missing);
+}
+
+/// Converts a log of another program to the recording `output`: each sample becomes a frame. --track gives
+/// the road for laps and progress; without it a lap ends where the car has been before. Values that the log
+/// lacks are NaN. Prints a summary on stderr. kParse for a file that is neither a ROS 2 bag with odometry nor
+/// a CSV table of a car.
+Result<void> convert_foreign_log(const std::string& file, const Options& options, const std::string& output) {
+  const auto log = identify::read_plain_log(file, {.columns = {},
+                                                   .odom_topic = options.identify.odom_topic,
+                                                   .drive_topic = options.identify.drive_topic,
+                                                   .needs_commands = false});
+  if (!log) return fail(log.error());
+  const Result<scenario::Scenario> scenario =
+      protocol::compose({.scenario_file = {}, .settings = options.settings});
+  if (!scenario) return fail(scenario.error());
+  const Result<std::optional<road::Track>> given = given_track(options, *scenario);
+  if (!given) return fail(given.error());
+  const road::Track* const track = *given ? &**given : nullptr;
+  const auto recorder = recorder_for(output, *scenario, track);
+  if (!recorder) return fail(recorder.error());
+
+  run::Roadside roadside(track, *scenario);
+  SentCommands commands(log->commands);
+  // Odometry: of the rear axle.
+  const double ahead = log->is_centre_of_mass ? 0.0 : scenario->vehicle.rear_axle;
+  std::size_t frames = 0;
+  int laps = 0;
+  double last = 0.0;
+  for (const identify::Sample& sample : log->samples) {
+    const double time = sample.time - log->samples.front().time;
+    if (frames > 0 && time - last < kMinStep) continue;
+    if (time - last > kMaxGap) roadside.resume();
+    last = time;
+    telemetry::Frame frame = frame_of(sample, ahead, commands.at(sample.time));
+    frame.cycle = frames++;
+    frame.time = frame.measurement.time = time;
+    roadside.judge(frame);
+    (*recorder)->record(frame);
+    if (const auto lap = roadside.take_lap()) {
+      (*recorder)->record(*lap);
+      ++laps;
+    }
+  }
+  if (const auto done = (*recorder)->finish(); !done) return fail(done.error());
+  fmt::print(stderr, "{}\n", summary_of(*log, track, laps, frames));
+  return {};
+}
+
+/// Whether all files are results of a sweep, lines of JSON; recordings are MCAP files.
 bool are_results(const std::vector<std::string>& files) {
   return std::all_of(files.begin(), files.end(), [](const std::string& file) {
     return std::filesystem::path(file).extension() == ".jsonl";
   });
 }
 
-/// Prints runs that differ in one setting beside each other.
+/// Runs `chicane report --compare`: prints runs that differ in one setting beside each other.
 ExitCode report_comparison(const Options& options) {
   const std::size_t equals = options.comparison.find('=');
   if (equals == std::string::npos || !are_results(options.log_files))
@@ -64,6 +164,7 @@ ExitCode report_comparison(const Options& options) {
   return compared->worse == 0 ? kSuccess : kRunFailed;
 }
 
+/// Writes maps and summary of a sweep.
 ExitCode report_sweep(const Options& options) {
   if (!options.maps_page.empty()) {
     const auto maps = sweep::write_maps(options.log_files, options.maps_page);
@@ -80,50 +181,10 @@ ExitCode report_sweep(const Options& options) {
   return kSuccess;
 }
 
-}  // namespace
-
-ExitCode report_logs(const Options& options) {
-  if (!options.comparison.empty()) return report_comparison(options);
-  if (options.output_file.empty() && options.maps_page.empty())
-    return report(Error{ErrorCode::kInvalidArgument,
-                        "report: got none of --output, --page and --compare, expected one"});
-  const Result<void> named = check_page_name("--output", options.output_file);
-  if (are_results(options.log_files)) return named ? report_sweep(options) : report(named.error());
-  if (!options.maps_page.empty())
-    return report(Error{ErrorCode::kInvalidArgument, "--page: got recordings, expected results of a sweep"});
-  recording::ReportOptions reporting{
-      .output = options.output_file, .logs = {}, .bundle = live::document_bundle()};
-  std::list<recording::TemporaryFile> copies;
-  for (const std::string& file : options.log_files) {
-    std::error_code error;  // ignored: the file may not exist
-    if (std::filesystem::equivalent(file, options.output_file, error)) {
-      return report(Error{ErrorCode::kInvalidArgument,
-                          fmt::format("--output: got {}, expected another file than a recording that is read",
-                                      options.output_file)});
-    }
-    std::string read = file;
-    if (named && recording::is_foreign_log(file)) {
-      copies.emplace_back(".mcap");
-      read = copies.back().path();
-      if (const Result<void> made = convert_foreign_log(file, options, read); !made)
-        return report(made.error());
-    }
-    reporting.logs.push_back({std::filesystem::path(file).filename().string(), read});
-  }
-  if (!named) return report(named.error());
-  const Result<recording::ReportSummary> written = recording::write_report(reporting);
-  if (!written) return report(written.error());
-  fmt::print("{}: {:.1f} MB, {:g} control steps a second; open it in a browser\n", options.output_file,
-             1e-6 * static_cast<double>(written->bytes), written->rate);
-  return kSuccess;
-}
-
-namespace {
-
 using recording::DrivenMoment;
 using recording::DrivenRun;
 
-/// The moments of the lap that was asked for: -1 means the last whole one, or all where there is none.
+/// Moments of a recording for the film: those of the lap, from --from-s on, for --for-s.
 Result<std::vector<DrivenMoment>> chosen(const DrivenRun& run, const Options::Video& video,
                                          const std::string& file) {
   const int lap = video.lap < 0 ? run.last_lap : video.lap;
@@ -140,7 +201,7 @@ Result<std::vector<DrivenMoment>> chosen(const DrivenRun& run, const Options::Vi
   return fail(ErrorCode::kInvalidArgument, "--from-s: got a moment behind the end of what is shown");
 }
 
-/// The number of pictures; nothing when it was stopped.
+/// Makes the film. Returns the number of pictures; empty if it was stopped.
 Result<std::optional<std::uint64_t>> film(const Options& options) {
   static std::atomic<bool> stop{false};  // static: must outlive the last signal
   catch_interrupts(stop);
@@ -183,6 +244,42 @@ Result<std::optional<std::uint64_t>> film(const Options& options) {
 
 }  // namespace
 
+ExitCode report_logs(const Options& options) {
+  if (!options.comparison.empty()) return report_comparison(options);
+  if (options.output_file.empty() && options.maps_page.empty())
+    return report(Error{ErrorCode::kInvalidArgument,
+                        "report: got none of --output, --page and --compare, expected one"});
+  const Result<void> named = check_page_name("--output", options.output_file);
+  if (are_results(options.log_files)) return named ? report_sweep(options) : report(named.error());
+  if (!options.maps_page.empty())
+    return report(Error{ErrorCode::kInvalidArgument, "--page: got recordings, expected results of a sweep"});
+  recording::ReportOptions reporting{
+      .output = options.output_file, .logs = {}, .bundle = live::document_bundle()};
+  std::list<recording::TemporaryFile> copies;
+  for (const std::string& file : options.log_files) {
+    std::error_code error;  // ignored: the file may not exist
+    if (std::filesystem::equivalent(file, options.output_file, error)) {
+      return report(Error{ErrorCode::kInvalidArgument,
+                          fmt::format("--output: got {}, expected another file than a recording that is read",
+                                      options.output_file)});
+    }
+    std::string read = file;
+    if (named && recording::is_foreign_log(file)) {
+      copies.emplace_back(".mcap");
+      read = copies.back().path();
+      if (const Result<void> made = convert_foreign_log(file, options, read); !made)
+        return report(made.error());
+    }
+    reporting.logs.push_back({std::filesystem::path(file).filename().string(), read});
+  }
+  if (!named) return report(named.error());
+  const Result<recording::ReportSummary> written = recording::write_report(reporting);
+  if (!written) return report(written.error());
+  fmt::print("{}: {:.1f} MB, {:g} control steps a second; open it in a browser\n", options.output_file,
+             1e-6 * static_cast<double>(written->bytes), written->rate);
+  return kSuccess;
+}
+
 ExitCode make_video(const Options& options) {
   const auto done = film(options);
   if (!done) {
@@ -196,106 +293,6 @@ ExitCode make_video(const Options& options) {
   fmt::print("{}: {} pictures\n", options.output_file, **done);
   return kSuccess;
 }
-
-namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kMinStep = 0.01;  // [s] closer samples are left out: 100 Hz are enough to look at
-constexpr double kMaxGap = 2.0;    // [s] a longer gap between samples ends a stint: its lap does not count
-
-/// Commands of a log, asked for with times that only grow.
-class SentCommands {
- public:
-  explicit SentCommands(const std::vector<identify::SentCommand>& commands)
-      : next_{commands.begin()}, end_{commands.end()} {}
-  /// The last command sent up to `time` [s]; NaN before the first one.
-  [[nodiscard]] model::Command at(double time) {
-    for (; next_ != end_ && next_->time <= time; ++next_)
-      acting_ = {.steer = next_->steer, .throttle = next_->throttle};
-    return acting_;
-  }
-
- private:
-  std::vector<identify::SentCommand>::const_iterator next_, end_;
-  model::Command acting_{.steer = kNaN, .throttle = kNaN};
-};
-
-/// A sample as a measurement of the centre of mass, which is `ahead` [m] of the log's reference point.
-telemetry::Frame frame_of(const identify::Sample& sample, double ahead, const model::Command& command) {
-  telemetry::Frame frame{};
-  frame.measurement.x = sample.x + ahead * cos(sample.psi);
-  frame.measurement.y = sample.y + ahead * sin(sample.psi);
-  frame.measurement.psi = sample.psi;
-  frame.measurement.speed = std::fabs(sample.speed);
-  frame.measurement.steer = command.steer;
-  frame.measurement.throttle = command.throttle;
-  frame.result.command = frame.asked = frame.applied = command;
-  return frame;
-}
-
-Result<std::unique_ptr<recording::Recorder>> recorder_for(const std::string& output,
-                                                          const scenario::Scenario& scenario,
-                                                          const road::Track* track) {
-  protocol::Run run;
-  run.controller = run.preset = "external";
-  run.vehicle = scenario.vehicle;
-  run.mode = recording::kSimulateMode;
-  if (track != nullptr) live::describe(*track, run);
-  return recording::Recorder::create({.path = output, .run = run, .scenario = scenario, .may_wait = true});
-}
-
-std::string summary_of(const identify::DriveLog& log, const road::Track* track, int laps,
-                       std::size_t frames) {
-  std::string missing;
-  if (log.commands.empty()) missing += ", no commands";
-  if (!log.commands.empty() && !log.has_throttle()) missing += ", no pedal";
-  if (track == nullptr) missing += ", no road (--track)";
-  return fmt::format("{}: a log of another program, {:.1f} s, {} samples shown, {} laps{}", log.source,
-                     log.samples.back().time - log.samples.front().time, frames, laps, missing);
-}
-
-Result<void> convert_foreign_log(const std::string& file, const Options& options, const std::string& output) {
-  const auto log = identify::read_plain_log(file, {.columns = {},
-                                                   .odom_topic = options.identify.odom_topic,
-                                                   .drive_topic = options.identify.drive_topic,
-                                                   .needs_commands = false});
-  if (!log) return fail(log.error());
-  const Result<scenario::Scenario> scenario =
-      protocol::compose({.scenario_file = {}, .settings = options.settings});
-  if (!scenario) return fail(scenario.error());
-  const Result<std::optional<road::Track>> given = given_track(options, *scenario);
-  if (!given) return fail(given.error());
-  const road::Track* const track = *given ? &**given : nullptr;
-  const auto recorder = recorder_for(output, *scenario, track);
-  if (!recorder) return fail(recorder.error());
-
-  run::Roadside roadside(track, *scenario);
-  SentCommands commands(log->commands);
-  const double ahead = log->is_centre_of_mass ? 0.0 : scenario->vehicle.rear_axle;  // odometry: the rear axle
-  std::size_t frames = 0;
-  int laps = 0;
-  double last = 0.0;
-  for (const identify::Sample& sample : log->samples) {
-    const double time = sample.time - log->samples.front().time;
-    if (frames > 0 && time - last < kMinStep) continue;
-    if (time - last > kMaxGap) roadside.resume();
-    last = time;
-    telemetry::Frame frame = frame_of(sample, ahead, commands.at(sample.time));
-    frame.cycle = frames++;
-    frame.time = frame.measurement.time = time;
-    roadside.judge(frame);
-    (*recorder)->record(frame);
-    if (const auto lap = roadside.take_lap()) {
-      (*recorder)->record(*lap);
-      ++laps;
-    }
-  }
-  if (const auto done = (*recorder)->finish(); !done) return fail(done.error());
-  fmt::print(stderr, "{}\n", summary_of(*log, track, laps, frames));
-  return {};
-}
-
-}  // namespace
 
 ExitCode replay_any_logs(const Options& options) { return replay_logs(options, convert_foreign_log); }
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// `chicane sweep`, `merge` and `tune`: many runs of one plan, their results in one file, and options tuned by
-// an optimiser.
+// `chicane sweep`, which drives many runs of one plan; `chicane merge`, which joins their results; and
+// `chicane tune`, which searches the numbers of a preset by an optimiser.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
@@ -24,16 +26,19 @@
 namespace chicane::apps {
 namespace {
 
+/// Shard of --shard, or of the environment.
 Result<run::Shard> shard_of(const Options& options) {
   if (!options.sweep.shard.empty()) return run::parse_shard(options.sweep.shard);
   return run::environment_shard([](const char* name) { return std::getenv(name); });
 }
 
+/// File of results of the whole sweep.
 std::string output_of(const Options& options) {
   if (!options.output_file.empty()) return options.output_file;
   return std::filesystem::path(options.sweep.plan_file).stem().string() + ".jsonl";
 }
 
+/// Prints the command of one run.
 ExitCode show(const sweep::Plan& plan, double number) {
   const auto run = static_cast<std::uint64_t>(number);
   if (run >= plan.size())
@@ -83,6 +88,7 @@ ExitCode merge_results(const Options& options) {
 
 namespace {
 
+/// Verdict in words.
 std::string words(const sweep::Verdict& verdict) {
   const std::string lap =
       std::isfinite(verdict.lap_time) ? fmt::format("{:.2f} s", verdict.lap_time) : "no lap";
@@ -94,6 +100,7 @@ std::string words(const sweep::Verdict& verdict) {
                      verdict.steering_rate, trials);
 }
 
+/// Head of the preset that was found.
 std::string description_of(const Options& options, const sweep::TuneTask& task, const sweep::Tuning& tuning) {
   std::string name = "a preset";
   for (const auto& [key, text] : task.settings)
@@ -104,14 +111,15 @@ std::string description_of(const Options& options, const sweep::TuneTask& task, 
       tuning.evaluations, words(tuning.found), words(tuning.by_hand));
 }
 
+/// Verdict as JSON, without the numbers of the search.
 protocol::Json json_of(const sweep::Verdict& verdict) {
   protocol::Json json;
   sweep::Verdict::rows(verdict, [&](const char* name, auto value) { json[name] = value; });
-  for (const char* name : {"progress", "passed"})
-    json.erase(name);  // numbers of the search, not of the tuning
+  for (const char* name : {"progress", "passed"}) json.erase(name);
   return json;
 }
 
+/// Result of the tuning as JSON.
 std::string json_of(const sweep::Tuning& tuning) {
   protocol::Json json{{"is_better", tuning.is_better},
                       {"evaluations", tuning.evaluations},
@@ -122,6 +130,7 @@ std::string json_of(const sweep::Tuning& tuning) {
   return protocol::json_text(json, protocol::JsonLayout::kIndented);
 }
 
+/// Result of the tuning as text.
 std::string text_of(const sweep::Tuning& tuning) {
   std::string text = fmt::format("by hand  {}\nfound    {}\n{} evaluations, {} runs", words(tuning.by_hand),
                                  words(tuning.found), tuning.evaluations, tuning.runs);
@@ -130,6 +139,7 @@ std::string text_of(const sweep::Tuning& tuning) {
   return text;
 }
 
+/// Writes the best tuning as a preset.
 Result<void> keep(const Options& options, const sweep::TuneTask& task, const sweep::Tuning& tuning) {
   const auto base = sweep::scenario_of(task.settings);
   sweep::Settings settings = task.settings;
@@ -138,6 +148,12 @@ Result<void> keep(const Options& options, const sweep::TuneTask& task, const swe
   if (!base || !found) return fail(!base ? base.error() : found.error());
   return write_file(options.output_file,
                     protocol::write_preset(*found, *base, description_of(options, task, tuning)));
+}
+
+/// Enumerator of a name. Pre: one of `names`.
+template <class Enum, std::size_t N>
+Enum enumerator_of(const std::array<std::string_view, N>& names, std::string_view name) {
+  return static_cast<Enum>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
 }  // namespace
@@ -151,12 +167,8 @@ ExitCode tune(const Options& options) {
                        .jobs = run::threads_for(options.jobs),
                        .log = options.tune.log};
   if (!options.speed_mps.empty()) task.settings.emplace_back("speed_mps", options.speed_mps);
-  for (std::size_t i = 0; i < sweep::kObjectiveNames.size(); ++i)
-    if (sweep::kObjectiveNames[i] == options.tune.objective)
-      task.objective = static_cast<sweep::Objective>(i);
-  for (std::size_t i = 0; i < sweep::kOptimizerNames.size(); ++i)
-    if (sweep::kOptimizerNames[i] == options.tune.optimizer)
-      task.optimizer = static_cast<sweep::Optimizer>(i);
+  task.objective = enumerator_of<sweep::Objective>(sweep::kObjectiveNames, options.tune.objective);
+  task.optimizer = enumerator_of<sweep::Optimizer>(sweep::kOptimizerNames, options.tune.optimizer);
   if (const Result<void> writable = check_writable(options.output_file); !writable)
     return report(writable.error());
   RunCounter counter("evaluations");

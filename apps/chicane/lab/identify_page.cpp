@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Page of `chicane identify`: one function for each section, in the order of the page.
+// Page of `chicane identify`: a function for each section, in the order of the page.
 #include "lab/identify_page.hpp"
 
 #include <fmt/format.h>
@@ -21,9 +21,10 @@ using identify::Identification;
 using protocol::Json;
 using protocol::ReportDocument;
 
-constexpr std::size_t kMostStretches = 6;  // maps of predictions: two rows on a screen
-constexpr std::size_t kMostDots = 1500;    // dots of one chart: more cover each other
+constexpr std::size_t kMostStretches = 6;  // maps of predictions: two rows on a screen; chosen
+constexpr std::size_t kMostDots = 1500;    // dots of one chart: more cover each other; chosen
 
+/// Section of the estimates.
 void add_numbers(ReportDocument& document, const Identification& found) {
   document.begin_section("Numbers");
   document.add_text(
@@ -40,8 +41,7 @@ void add_numbers(ReportDocument& document, const Identification& found) {
                      std::move(rows));
 }
 
-/// Map of one stretch: measured path, and the prediction from the last sample that the model knows. Dots mark
-/// whole seconds.
+/// Map of one stretch: measured path, and prediction from the last known sample on. Dots mark whole seconds.
 void add_path(ReportDocument& document, const identify::PredictedStretch& stretch) {
   std::vector<double> measured, model, measured_seconds, model_seconds;
   double next = stretch.known;
@@ -61,6 +61,7 @@ void add_path(ReportDocument& document, const identify::PredictedStretch& stretc
   document.add_series("dots", "other", "", model_seconds);
 }
 
+/// Section of the predictions on held-out ends.
 void add_predictions(ReportDocument& document, const Identification& found) {
   document.begin_section("Predicted against measured");
   if (found.stretches.empty())
@@ -87,6 +88,7 @@ void add_predictions(ReportDocument& document, const Identification& found) {
     add_path(document, found.stretches[i]);
 }
 
+/// Kind of residual.
 struct ResidualKind {
   const char* name;               ///< title of its chart
   double (*of)(const Compared&);  ///< model less measurement
@@ -102,6 +104,7 @@ double lag_one_correlation(const std::vector<double>& values) {
   return square > 0.0 ? product / square : 0.0;
 }
 
+/// Section of the residuals of the fit.
 void add_residuals(ReportDocument& document, const Identification& found) {
   static constexpr ResidualKind kKinds[] = {
       {"along the car [m]",
@@ -133,6 +136,7 @@ void add_residuals(ReportDocument& document, const Identification& found) {
   }
 }
 
+/// Section of the correlations of the estimates.
 void add_correlations(ReportDocument& document, const Identification& found) {
   document.begin_section("Correlations");
   document.add_text(
@@ -151,6 +155,7 @@ void add_correlations(ReportDocument& document, const Identification& found) {
   document.add_grid("", columns, std::move(rows));
 }
 
+/// Section of the slip that the logs cover.
 void add_slip(ReportDocument& document, const Identification& found) {
   document.begin_section("Slip covered");
   document.add_text(

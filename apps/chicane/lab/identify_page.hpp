@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Page of `chicane identify`.
 #pragma once
 
 #include <string>
@@ -7,15 +8,16 @@
 
 namespace chicane::apps {
 
-/// Texts on the page of an identification, around its figures.
+/// Texts of the page of an identification.
 struct IdentifyPageWords {
   std::string logs;     ///< names of the files
   std::string advice;   ///< sentences, a line each; may be empty
   std::string command;  ///< command line that drives the found car
 };
 
-/// A document (protocol/json.hpp): the numbers with their intervals, measured against predicted
-/// motion on the held-out ends, residuals, correlations of the estimates, and the slip that the log covers.
+/// HTML document (protocol/json.hpp) of an identification: numbers with their intervals, predicted against
+/// measured motion on the held-out ends, residuals, correlations of the estimates, and the slip that the logs
+/// cover.
 [[nodiscard]] std::string identify_document(const identify::Identification& found,
                                             const IdentifyPageWords& words);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Commands that drive many runs: threads, progress with the time left, and tables of results.
+// Common parts of the commands that drive many runs: threads, progress with the time left, and tables of
+// results.
 #include "lab/many_runs.hpp"
 
 #include <fmt/format.h>
@@ -21,22 +22,23 @@
 namespace chicane::apps {
 namespace {
 
-constexpr int kKeptMemory = 1 << 30;  // [byte] more than a run allocates at a time
+constexpr int kKeptMemory = 1 << 30;  // [byte] more than a run allocates at a time; chosen
 
-/// Time left in two digits or more: minutes from 90 s, hours from 90 min.
+/// Time left with two digits or more: in minutes from 90 s on, in hours from 90 min on.
 std::string time_left(double seconds) {
   if (seconds < 90.0) return fmt::format("{:.0f} s", seconds);
   if (seconds < 90.0 * 60.0) return fmt::format("{:.0f} min", seconds / 60.0);
   return fmt::format("{:.1f} h", seconds / 3600.0);
 }
 
+/// Drives the plan by its rule, or as a sweep does.
 Result<sweep::Progress> drive(const PlanRuns& runs, const sweep::SweepOptions& options,
                               const std::atomic<bool>& stop) {
   return runs.rule ? sweep::drive_plan(runs.plan, {}, options, runs.rule, stop)
                    : sweep::drive_plan(runs.plan, {}, options, stop);
 }
 
-/// Name of a run in messages: its command line, or with a rule of its own its values on the plan's axes.
+/// Name of a run in messages: its command line; with a rule of its own the values of the axes.
 std::string name_of(const PlanRuns& runs, std::uint64_t run) {
   if (!runs.rule) return sweep::command_of(runs.plan.settings_of(run));
   std::string name;

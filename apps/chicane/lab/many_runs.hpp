@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Common parts of the commands that drive many runs: threads, progress, files of results, tables.
 #pragma once
 
 #include <atomic>
@@ -18,23 +19,23 @@
 
 namespace chicane::apps {
 
-/// Begins a command that drives many runs. Each takes some megabytes and gives them back: the process keeps
-/// them for the next one. Ctrl-C and SIGTERM set the flag that is returned (program.hpp).
+/// Begins a command that drives many runs: lets the process keep memory that a run frees, for the next run.
+/// Returns the flag that Ctrl-C and SIGTERM set (program.hpp).
 [[nodiscard]] std::atomic<bool>& begin_many_runs();
 
-/// Replaces the part of a page behind `marker`, or a whole page without one. kIo.
+/// Replaces the part of a page after `marker`; without the marker the whole page. kIo.
 [[nodiscard]] Result<void> write_below(const std::string& page, std::string_view marker,
                                        const std::string& text);
 
-/// Shows on stderr how many of many runs are done, how fast, and how long the rest will take. One thread at a
-/// time.
+/// Progress of many runs on stderr: how many are done, how fast, and how long the rest will take. One thread
+/// at a time.
 class RunCounter {
  public:
   /// `what`: plural noun for the counted things.
   explicit RunCounter(const char* what = "runs") : what_{what} {}
-  /// `driven`: of the `done` ones since the start, for the speed.
+  /// Shows that `done` of `runs` are done. `driven`: those since the start, for the speed.
   void show(std::uint64_t done, std::uint64_t runs, std::uint64_t driven);
-  /// Leaves the cursor at the beginning of a line.
+  /// Ends the line of progress.
   void end() { line_.end(); }
   /// Observer for SweepOptions::on_progress, valid as long as this counter.
   [[nodiscard]] std::function<void(const sweep::Progress&)> follow();
@@ -44,29 +45,30 @@ class RunCounter {
   StatusLine line_;
 };
 
-/// The runs of a command: a plan, and what drives each of them.
+/// Runs of a command: a plan, and the function that drives each run.
 struct PlanRuns {
   sweep::Plan plan;
-  sweep::RunRule rule{};      ///< empty: as a sweep does
+  sweep::RunRule rule{};      ///< empty: drives as a sweep does
   const char* what = "runs";  ///< plural noun for the counted things
-  bool keeps_failed = false;  ///< a run that cannot be driven is a line with the reason, and no failure
+  /// A run that cannot be driven becomes a line with the reason; else drive_runs() fails.
+  bool keeps_failed = false;
 };
 
-/// Lines of results by number; stopped runs are missing.
+/// Lines of results by number of the run; runs that were stopped are missing.
 struct RunLines {
   std::map<std::uint64_t, protocol::Json> lines;
   sweep::Progress progress;
 };
 
-/// Drives the runs with `jobs` threads, 0: as many as there are processors, and reports progress on stderr.
-/// The lines are kept in `results`, where an older file is completed; empty: nowhere. Fails as
-/// sweep::drive_plan() does, and with the first line of a run that cannot be driven.
+/// Drives the runs with `jobs` threads, 0: as many as there are processors, and shows the progress on stderr.
+/// `results`: file for the lines, which is completed if it exists; empty: none. Fails as sweep::drive_plan()
+/// does, and with the error of the first run that cannot be driven.
 [[nodiscard]] Result<RunLines> drive_runs(const PlanRuns& runs, int jobs, const std::string& results,
                                           const std::atomic<bool>& stop);
 
 /// Prints `{"rows": [...]}` on stdout.
 void print_rows(protocol::Json rows);
-/// Prints a table on stdout in the chosen form: text, Markdown or the rows of print_rows().
+/// Prints a table on stdout as the options ask for: text, Markdown, or JSON as print_rows().
 void print_table(const Options& options, const sweep::ResultTable& table);
 
 }  // namespace chicane::apps

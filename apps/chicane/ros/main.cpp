@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The program chicane-ros, which `chicane ros` becomes: the only one that needs DDS.
+// The program chicane-ros, which runs the command `chicane ros`: the only program that needs DDS.
 #include <fmt/format.h>
 
 #include <atomic>
@@ -21,11 +21,12 @@ namespace chicane::apps {
 
 namespace {
 
-std::atomic<bool> ros_stop{false};  // set by signals, whose handler outlives each run
+std::atomic<bool> ros_stop{false};  // set by signals; static, because it must outlive the last signal
 
-/// Remedy for a stopped car of ROS 2 (telemetry::SituationTerms).
+/// Sentence about what helps a stopped car of ROS 2 (telemetry::SituationTerms).
 constexpr std::string_view kPoseRemedy = "Send the pose on /initialpose, or drive there by hand";
 
+/// Options of the node by the command line.
 ros::NodeOptions node_of(const Options& options) {
   const Options::Ros& given = options.ros;
   ros::NodeOptions node;
@@ -46,13 +47,13 @@ ros::NodeOptions node_of(const Options& options) {
   return node;
 }
 
-/// The F1TENTH car, whose names the topics have, where neither a scenario nor an option chooses another.
+/// Options with the car f1tenth, whose names the topics have, unless an option names a car.
 Options with_car(Options options) {
   if (!has_setting(options, "car")) options.settings.insert(options.settings.begin(), {"car", "f1tenth"});
   return options;
 }
 
-/// A topic is "/" and names of letters, digits and underscores.
+/// Checks names of topics: "/", then parts of letters, digits and underscores, separated by "/".
 Result<void> check_topics(const ros::TopicNames& topics) {
   for (const auto& [option, topic] :
        {std::pair{"--odom-topic", &topics.odom}, std::pair{"--drive-topic", &topics.drive},
@@ -71,6 +72,7 @@ Result<void> check_topics(const ros::TopicNames& topics) {
   return {};
 }
 
+/// Drives another program's car with the controller.
 Result<wire::ServeSummary> drive_until_stopped(const Options& options, const ros::NodeOptions& node) {
   Result<scenario::Scenario> scenario = experiment(options);
   if (!scenario) return fail(scenario.error());
@@ -92,12 +94,14 @@ Result<wire::ServeSummary> drive_until_stopped(const Options& options, const ros
       });
 }
 
+/// Runs the controller as a node.
 ExitCode drive_node(const Options& options, const ros::NodeOptions& node) {
   const Result<wire::ServeSummary> summary = drive_until_stopped(options, node);
   if (!summary) return report(summary.error());
   return print(options, *summary, "commands", "cars");
 }
 
+/// Runs the simulator as a node.
 ExitCode simulate_node(const Options& options, const ros::NodeOptions& node) {
   const Result<wire::SimulateReport> done = drive_by_external(
       options,
@@ -120,7 +124,7 @@ ExitCode simulate_node(const Options& options, const ros::NodeOptions& node) {
 
 }  // namespace
 
-/// The controller as a ROS 2 node, or the simulator for one.
+/// Runs the controller as a ROS 2 node, or the simulator for one.
 ExitCode ros_node(const Options& given) {
   if (given.ros.is_simulator) catch_interrupts(ros_stop);
   const Options options = with_car(given);

@@ -19,10 +19,11 @@
 #define CHICANE_ASSERT(condition) static_cast<void>(0)
 #endif
 
-/// Forced inlining, for kernels that are written as many small functions. CHICANE_INLINE, written after the
-/// parameters of a function or lambda, inlines it into its callers; CHICANE_FLATTEN inlines all calls that a
-/// function makes. Empty in Debug and for sanitizers, which would compile one file for minutes, and with
-/// CHICANE_NO_FORCED_INLINE. Results have the same bits with and without it.
+/// Forced inlining, for kernels that are written as many small functions:
+///   CHICANE_INLINE   inlines a function or lambda into its callers (of a lambda after its parameters)
+///   CHICANE_FLATTEN  inlines all calls that a function makes
+/// Both are empty in Debug and for sanitizers, which would compile one file for minutes, and where
+/// CHICANE_NO_FORCED_INLINE is defined. Results have the same bits with and without forced inlining.
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 #define CHICANE_IS_SANITIZED

@@ -24,8 +24,8 @@ tl::unexpected<Error> cannot_be_written(const std::string& path, int reason) {
   return fail(ErrorCode::kIo, path + ": cannot be written: " + std::strerror(reason));
 }
 
-/// Whether `path` names an open descriptor. The file belongs to the program that opened it: append, never
-/// replace.
+/// Whether `path` names an open descriptor. Its file belongs to the program that opened it: is appended to,
+/// never replaced.
 bool is_descriptor(std::string_view path) {
   constexpr std::array<std::string_view, 3> kFolders{"/dev/std", "/dev/fd/", "/proc/"};
   return std::any_of(kFolders.begin(), kFolders.end(), [&](auto folder) { return path.starts_with(folder); });
@@ -62,7 +62,7 @@ FileWriter::FileWriter(std::string path, unsigned mode) : path_{std::move(path)}
 
   if (descriptor_ < 0) {
     part_.clear();
-    // The folder takes no new file: write the old file directly.
+    // Folders that take no new file: write() opens the old one.
     require(exists && (errno == EACCES || errno == EPERM || errno == EROFS));
   } else if (exists) {
     static_cast<void>(!::fchown(descriptor_, old.st_uid, old.st_gid));  // only root may: failure ignored

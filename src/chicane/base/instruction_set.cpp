@@ -16,21 +16,27 @@ constexpr std::array kNames{
     std::pair{kAvx512, std::string_view{"avx512"}}, std::pair{kNeon, std::string_view{"neon"}}};
 constexpr int kNotChosen = -1;
 
+/// Number of the InstructionSet chosen for the process, or kNotChosen.
 std::atomic<int>& choice() noexcept {
   static std::atomic<int> chosen{kNotChosen};
   return chosen;
 }
 
+/// Names of the instruction sets that meet a condition: "baseline, avx2".
 template <class Condition>
-std::string names_of(const Condition& has) {
+std::string names_of(const Condition& meets) {
   std::string names;
   for (const auto& [set, name] : kNames) {
-    if (has(set)) names += (names.empty() ? "" : ", ") + std::string(name);
+    if (meets(set)) names += (names.empty() ? "" : ", ") + std::string(name);
   }
   return names;
 }
 
-/// Whether processors of this family can have it.
+tl::unexpected<Error> refuse(const std::string& words) {
+  return fail(ErrorCode::kInvalidArgument, "instruction set: " + words);
+}
+
+/// Whether some processor of this family (x86-64, aarch64, others) has the instruction set.
 bool is_of_family(InstructionSet set) noexcept {
 #if defined(__x86_64__)
   return set != kNeon;
@@ -103,16 +109,12 @@ Result<InstructionSet> instruction_set_by_name(std::string_view name) {
   for (const auto& [set, known] : kNames) {
     if (known != name) continue;
     if (is_available(set)) return set;
-    if (is_supported(set)) {
-      return fail(ErrorCode::kInvalidArgument, "instruction set: got " + std::string(name) +
-                                                   ", which was not built in; this program has " +
-                                                   built_instruction_sets() + ". " + how_to_build(name));
-    }
-    return fail(ErrorCode::kInvalidArgument, "instruction set: got " + std::string(name) +
-                                                 ", this processor has " + names_of(is_supported));
+    const std::string got = "got " + std::string(name);
+    if (!is_supported(set)) return refuse(got + ", this processor has " + names_of(is_supported));
+    return refuse(got + ", which was not built in; this program has " + built_instruction_sets() + ". " +
+                  how_to_build(name));
   }
-  return fail(ErrorCode::kInvalidArgument, "instruction set: got \"" + std::string(name) +
-                                               "\", expected one of " + names_of(is_available));
+  return refuse("got \"" + std::string(name) + "\", expected one of " + names_of(is_available));
 }
 
 std::string how_to_build(std::string_view name) {
@@ -125,10 +127,8 @@ Result<InstructionSet> environment_instruction_set() {
   if (asked == nullptr || *asked == '\0') {
     const InstructionSet best = detect_instruction_set();
     if (is_available(best)) return best;
-    return fail(ErrorCode::kInvalidArgument, "instruction set: this program was built with " +
-                                                 built_instruction_sets() +
-                                                 " alone, and this processor has " + names_of(is_supported) +
-                                                 ": build it on this machine");
+    return refuse("this program was built with " + built_instruction_sets() +
+                  " alone, and this processor has " + names_of(is_supported) + ": build it on this machine");
   }
   auto set = instruction_set_by_name(asked);
   if (!set) return fail(set.error().code, "CHICANE_SIMD: " + set.error().message);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Choice of the processor's instruction set at run time. One program has code for several of them.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +9,6 @@
 
 #include "chicane/base/result.hpp"
 
-// Choice of the processor's instruction set at run time. One program has code for several of them.
 // A source file that is to be compiled for each of them takes these steps:
 //   1. Write the work as templates over an instruction set, `template <class Arch> class FastSolver : public
 //      Solver` with Pack<Arch, 8> inside, behind a small abstract interface `Solver`.
@@ -93,7 +93,7 @@ enum class InstructionSet : std::uint8_t { kBaseline, kAvx2, kAvx512, kNeon };
 
 /// Instruction set of solvers made from now on: the last choice, else CHICANE_SIMD of the environment, else
 /// the best one. An unavailable CHICANE_SIMD is replaced by "baseline", or by the best one if baseline is not
-/// built; programs refuse it at their start by environment_instruction_set().
+/// built; programs call environment_instruction_set() at their start to refuse such a CHICANE_SIMD.
 [[nodiscard]] InstructionSet chosen_instruction_set() noexcept;
 /// Sets the choice of the whole process; for replays and tests. Any thread. Pre: is_available(set).
 void choose_instruction_set(InstructionSet set) noexcept;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Arithmetic, elementary functions, choices and smooth functions of jets: numbers with derivatives.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +12,8 @@
 
 namespace chicane {
 
-/// Arithmetic, elementary functions and choices for jets (jet_rules.hpp), and a common type for mixed
-/// arguments.
+// Each function states its value and partial derivatives; the chain rule (detail/jet_rules.hpp) does the
+// rest.
 
 // ---- arithmetic
 
@@ -87,26 +88,22 @@ template <AnyJet A, ConstantFor<A> S>
   return jet::chain(a, value, slope, -2.0 * slope * inverse);
 }
 
-// Comparisons see values only.
-template <class A, class B>
-requires(AnyJet<A> || AnyJet<B>) [[nodiscard]] CHICANE_INLINE inline constexpr auto operator<(const A& a,
-                                                                                              const B& b) {
+// Comparisons, of values only.
+template <class A, WithJet<A> B>
+[[nodiscard]] CHICANE_INLINE inline constexpr auto operator<(const A& a, const B& b) {
   return jet::value(a) < jet::value(b);
 }
-template <class A, class B>
-requires(AnyJet<A> || AnyJet<B>) [[nodiscard]] CHICANE_INLINE inline constexpr auto operator>(const A& a,
-                                                                                              const B& b) {
+template <class A, WithJet<A> B>
+[[nodiscard]] CHICANE_INLINE inline constexpr auto operator>(const A& a, const B& b) {
   return jet::value(a) > jet::value(b);
 }
 
-template <class A, class B>
-requires(AnyJet<A> || AnyJet<B>) [[nodiscard]] CHICANE_INLINE inline constexpr auto operator<=(const A& a,
-                                                                                               const B& b) {
+template <class A, WithJet<A> B>
+[[nodiscard]] CHICANE_INLINE inline constexpr auto operator<=(const A& a, const B& b) {
   return jet::value(a) <= jet::value(b);
 }
-template <class A, class B>
-requires(AnyJet<A> || AnyJet<B>) [[nodiscard]] CHICANE_INLINE inline constexpr auto operator>=(const A& a,
-                                                                                               const B& b) {
+template <class A, WithJet<A> B>
+[[nodiscard]] CHICANE_INLINE inline constexpr auto operator>=(const A& a, const B& b) {
   return jet::value(a) >= jet::value(b);
 }
 
@@ -167,7 +164,7 @@ template <AnyJet A, AnyJet B>
 
 // ---- choices without branches
 
-/// `a` where the mask is set, else `b`, with the derivatives of the one chosen.
+/// `a` where the mask is set, else `b`, each with its derivatives.
 template <class M, AnyJet A, AnyJet B>
 [[nodiscard]] CHICANE_INLINE inline constexpr auto select(const M& mask, const A& a, const B& b) {
   using V = typename A::Value;
@@ -199,14 +196,12 @@ template <class M, AnyJet A, ConstantFor<A> S>
 [[nodiscard]] CHICANE_INLINE inline constexpr auto select(const M& mask, const S& b, const A& a) {
   return select(mask, Jet<typename A::Value, A::kOrder, 0>(b), a);
 }
-template <class A, class B>
-requires(AnyJet<A> || AnyJet<B>)
-    [[nodiscard]] CHICANE_INLINE inline constexpr auto max(const A& a, const B& b) {
+template <class A, WithJet<A> B>
+[[nodiscard]] CHICANE_INLINE inline constexpr auto max(const A& a, const B& b) {
   return select(a > b, a, b);
 }
-template <class A, class B>
-requires(AnyJet<A> || AnyJet<B>)
-    [[nodiscard]] CHICANE_INLINE inline constexpr auto min(const A& a, const B& b) {
+template <class A, WithJet<A> B>
+[[nodiscard]] CHICANE_INLINE inline constexpr auto min(const A& a, const B& b) {
   return select(a < b, a, b);
 }
 /// max(a, 0): the excess over a limit.
@@ -223,8 +218,9 @@ template <AnyJet A>
 
 namespace jet {
 
+/// Variables, order and values of a jet; of a constant, which has no derivatives, as well.
 template <class T>
-struct Traits {  // derivatives of a constant
+struct Traits {
   static constexpr Variables kFirst = 0;
   static constexpr int kOrder = 0;
   using Value = T;
@@ -232,6 +228,7 @@ struct Traits {  // derivatives of a constant
 template <AnyJet T>
 struct Traits<T> : T {};
 
+/// The jet with all derivatives that any of T… has; the values' type if all are constants.
 template <class... T>
 struct Common {
   static constexpr Variables kAll = (Traits<T>::kFirst | ...);
@@ -240,6 +237,7 @@ struct Common {
   using Value = std::common_type_t<typename Traits<T>::Value...>;
   using Type = std::conditional_t<kOrder == 0, Value, Jet<Value, kOrder, kAll, 0, kPairs>>;
 };
+/// The first LooseJet among T…
 template <class T, class... Rest>
 struct LooseOf : LooseOf<Rest...> {};
 template <AnyLooseJet T, class... Rest>
@@ -252,17 +250,19 @@ requires(AnyLooseJet<T> || ...) struct Common<T...> : LooseOf<T...> {
 
 }  // namespace jet
 
-/// Type that holds each of T… and is closed under arithmetic, for homogeneous code (struct Motion<T>).
+/// Type that holds each of T… and is closed under arithmetic, for code with one type of numbers (struct
+/// Motion<T>).
 template <class... T>
 using Common = typename jet::Common<std::remove_cvref_t<T>...>::Type;
 
-/// asin, acos, pow and hypot for jets, and smooth functions for any scalar. Argument-dependent look-up finds
-/// them: models write neither `chicane::` nor `using`.
-///
-/// Where a derivative is infinite or does not exist, it is not a number, and a solve that comes there ends
-/// *not finite*: asin and acos at ±1 and beyond, pow with an exponent below 2 that is not whole at 0 (and for
-/// x < 0 the value, too), hypot at (0, 0). max, min, abs, select and positive_part have the derivatives of
-/// the side that is chosen; at the edge that of the second argument, abs those of +x, positive_part 0.
+// ---- asin, acos, pow and hypot for jets, and smooth functions for any scalar
+//
+// Argument-dependent look-up finds all functions of this file: models write neither `chicane::` nor `using`.
+//
+// A derivative that is infinite or does not exist is not a number, and the solve that needs it ends *not
+// finite*: of asin and acos at ±1 and beyond, of pow at 0 with an exponent below 2 that is not whole (for x <
+// 0 the value, too), of hypot at (0, 0). max, min, abs, select and positive_part have the derivatives of the
+// chosen side. At the edge max and min have those of the second argument, abs those of +x, positive_part 0.
 
 template <AnyJet A>
 [[nodiscard]] CHICANE_INLINE inline auto asin(const A& a) {
@@ -277,7 +277,7 @@ template <AnyJet A>
   return jet::chain(a, acos(a.v), -slope, -a.v * slope * inverse);
 }
 
-/// A constant exponent; whole ones up to ±64 for bases of any sign.
+/// Power with a constant exponent; whole exponents up to ±64 take bases of any sign.
 template <AnyJet A>
 [[nodiscard]] CHICANE_INLINE inline auto pow(const A& a, double exponent) {
   using V = typename A::Value;
@@ -286,7 +286,7 @@ template <AnyJet A>
       exponent == 0.0 || exponent == 1.0 ? V(0.0) : V(exponent * (exponent - 1.0) * pow(a.v, exponent - 2.0));
   return jet::chain(a, pow(a.v, exponent), slope, curvature);
 }
-/// exp(b · log(a)): a > 0.
+/// Power exp(b · log(a)) of a base a > 0.
 template <AnyJet A, AnyJet B>
 [[nodiscard]] CHICANE_INLINE inline auto pow(const A& a, const B& b) {
   return exp(b * log(a));

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Elementary functions of doubles: the templates of detail/elementary.hpp, compiled once.
 #include "chicane/base/math.hpp"
 
 #include "chicane/base/detail/elementary.hpp"

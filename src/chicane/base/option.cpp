@@ -11,8 +11,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// Whether `value`, in the option's unit, is allowed; false for not-a-number.
 bool is_in_range(const Option& option, double value) {
-  return (value >= option.minimum && value <= option.maximum) ||  // false for not-a-number
+  return (value >= option.minimum && value <= option.maximum) ||
          (option.may_be_infinite && value == kInfinity);
 }
 
@@ -38,7 +39,7 @@ Result<void> set_text(const Option& option, std::string_view key, void* owner, c
   return {};
 }
 
-/// Whether a field has a value that set() could have given it.
+/// Whether `value`, as Option::read() returns it, is one that set() accepts.
 bool is_valid(const Option& option, const OptionValue& value) {
   if (const auto* text = std::get_if<std::string>(&value)) {
     return option.kind == OptionKind::kText ||
@@ -48,7 +49,7 @@ bool is_valid(const Option& option, const OptionValue& value) {
   if (number == nullptr) return true;
   if (option.kind == OptionKind::kChoice)
     return *number >= 0.0 && *number < static_cast<double>(option.choices.size());
-  // The bounds as set() would store them: conversion rounds, and never swaps two values.
+  // Compares in SI, as set() stores values: conversion rounds the value and its bounds alike.
   return (*number >= option.unit.to_si(option.minimum) && *number <= option.unit.to_si(option.maximum)) ||
          (option.may_be_infinite && *number == kInfinity);
 }
@@ -109,7 +110,7 @@ Result<void> check_options(std::string_view group, std::span<const Option> optio
   for (const Option& option : options) {
     if (is_valid(option, option.read(owner))) continue;
     const OptionValue value = option.read(owner);
-    const auto* number = std::get_if<double>(&value);
+    const auto* number = std::get_if<double>(&value);  // null for a text: a bool is always valid
     return fail(refusal(option_key(group, option),
                         number != nullptr ? number_text(option.unit.from_si(*number))
                                           : printable(std::get<std::string>(value)),

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Options: rows that describe the fields of settings (name, unit, range, meaning), and their use by key.
 #pragma once
 
 #include <algorithm>
@@ -17,25 +18,24 @@
 
 namespace chicane {
 
-/// `value` in [low, high]; nothing when it is outside. What lies beyond a border by no more than the rounding
-/// of single precision, a millionth of the larger border (or of 1), is the border: programs that compute with
-/// floats mean it. Not-a-number is outside. Requires finite low <= high.
+/// `value` in [low, high]; nothing when it is outside or not a number. A value beyond a border by no more
+/// than the rounding of single precision, a millionth of the larger border (or of 1), becomes the border,
+/// because programs that compute with floats send such values. Pre: finite low <= high.
 [[nodiscard]] inline std::optional<double> within(double value, double low, double high) noexcept {
   const double rounding = 1e-6 * std::max({1.0, std::fabs(low), std::fabs(high)});
   if (!(value >= low - rounding && value <= high + rounding)) return std::nullopt;
   return std::clamp(value, low, high);
 }
 
-// Settings: each options struct has a table of its fields with name, unit, range and meaning, beside the code
-// that uses them. Configuration keys, command line, range checks and docs/reference/configuration.md follow
-// from these rows.
+// Each options struct has a table of its fields, one Option a row, beside the code that uses them.
+// Configuration keys, command line, range checks and docs/reference/configuration.md follow from these rows.
 
-/// Unit of a number outside C++, where keys carry it as a suffix; inside all is SI. SI value = value outside
-/// · factor / divisor.
+/// Unit of a number outside C++, where keys have it as a suffix. Inside C++ all values are SI: SI value =
+/// value outside · factor / divisor.
 struct Unit {
   std::string_view name;    ///< unit for people: "m/s", "ms", "deg"; empty for pure numbers
-  std::string_view suffix;  ///< the end of the key: "_mps", "_ms", "_deg"; empty where the name needs none
-  double factor = 1.0;
+  std::string_view suffix;  ///< end of the key: "_mps", "_ms", "_deg"; empty where the name needs none
+  double factor = 1.0;      ///< beside `divisor`, so that decimal values convert with one rounding fewer
   double divisor = 1.0;
 
   [[nodiscard]] constexpr double to_si(double outside) const noexcept { return outside * factor / divisor; }
@@ -54,28 +54,30 @@ inline constexpr Unit kDegreePerSecond{"deg/s", "_degps", kPi / 180.0, 1.0};
 inline constexpr Unit kKilogram{"kg", "_kg"};
 inline constexpr Unit kInertia{"kg m²", "_kgm2"};
 inline constexpr Unit kPowerPerMass{"W/kg", "_wpkg"};
-/// Unit of weights and gains: shown to people; the key names the weighed quantity and has no suffix.
+/// Unit of weights and gains, shown to people; the key has no suffix.
 [[nodiscard]] constexpr Unit per(std::string_view name) noexcept { return {name, "", 1.0, 1.0}; }
 }  // namespace unit
 
+/// Kind of value of an option. A choice is one of a list of names.
 enum class OptionKind { kNumber, kInteger, kBool, kChoice, kText };
 
-/// A number or integer is double, a choice or text std::string.
+/// Value of an option outside C++: double for numbers and integers, std::string for choices and texts.
 using OptionValue = std::variant<double, bool, std::string>;
 
-/// One row: a field of some options struct. Made by option<&PidOptions::integral_gain>(...).
+/// One row: the description of a field of an options struct. Made by option<&PidOptions::integral_gain>(...).
 struct Option {
   std::string_view name;  ///< name of the field, without its unit: "speed_reference"
   OptionKind kind = OptionKind::kNumber;
   Unit unit;
-  double minimum = 0.0;  ///< least value in `unit`, allowed itself; numbers and integers only
-  double maximum = 0.0;
-  std::string_view meaning;                            ///< one sentence
-  std::span<const std::string_view> choices{};         ///< names in the order of the enum, if it is one
-  bool may_be_infinite = false;                        ///< accepts "inf" (no limit) beside [minimum, maximum]
-  OptionValue (*read)(const void*) = nullptr;          ///< reads the field: SI, an enum as its number
-  void (*write)(void*, const OptionValue&) = nullptr;  ///< the same way
+  double minimum = 0.0;                         ///< least allowed value in `unit`; numbers and integers only
+  double maximum = 0.0;                         ///< greatest allowed value in `unit`
+  std::string_view meaning;                     ///< one sentence
+  std::span<const std::string_view> choices{};  ///< names in the order of the enum, if it is one
+  bool may_be_infinite = false;                 ///< accepts "inf" (no limit) beside [minimum, maximum]
+  OptionValue (*read)(const void*) = nullptr;   ///< reads the field: SI, an enum as its number
+  void (*write)(void*, const OptionValue&) = nullptr;  ///< sets the field: SI, an enum by its number
 
+  /// The same row, which accepts "inf", too.
   [[nodiscard]] constexpr Option or_infinite() const noexcept {
     Option copy = *this;
     copy.may_be_infinite = true;
@@ -83,13 +85,14 @@ struct Option {
   }
 };
 
-/// Two options of a struct that are each in range and exclude each other.
+/// Contradiction of two options of a struct, each of which is in range.
 struct OptionContradiction {
-  std::string_view option;  ///< the one to change: Option::name
+  std::string_view option;  ///< Option::name of the option to change
   std::string message;      ///< "got 50 ms, expected ..."
 };
 
 namespace detail {
+/// Struct to which a pointer to a member belongs.
 template <class Pointer>
 struct MemberPointer;
 template <class Struct, class Member>
@@ -97,7 +100,7 @@ struct MemberPointer<Member Struct::*> {
   using Owner = Struct;
 };
 
-/// The way to a field through members: &PidOptions::speed, &SpeedHoldOptions::speed_gain.
+/// Access to a field by a chain of pointers to members: &PidOptions::speed, &SpeedHoldOptions::speed_gain.
 template <auto First, auto... Rest>
 struct OptionAccess {
   using Owner = typename MemberPointer<decltype(First)>::Owner;
@@ -129,7 +132,7 @@ struct OptionAccess {
 };
 }  // namespace detail
 
-/// A number or an integer in [minimum, maximum] `unit`.
+/// Row of a number or an integer in [minimum, maximum] `unit`.
 template <auto... Members>
 [[nodiscard]] constexpr Option option(std::string_view name, Unit unit, double minimum, double maximum,
                                       std::string_view meaning) {
@@ -137,14 +140,14 @@ template <auto... Members>
   static_assert(Access::kind() == OptionKind::kNumber || Access::kind() == OptionKind::kInteger);
   return {name, Access::kind(), unit, minimum, maximum, meaning, {}, false, Access::read, Access::write};
 }
-/// A switch or a text.
+/// Row of a switch or a text.
 template <auto... Members>
 [[nodiscard]] constexpr Option option(std::string_view name, std::string_view meaning) {
   using Access = detail::OptionAccess<Members...>;
   static_assert(Access::kind() == OptionKind::kBool || Access::kind() == OptionKind::kText);
   return {name, Access::kind(), {}, 0.0, 0.0, meaning, {}, false, Access::read, Access::write};
 }
-/// One of `choices`: a text, or an enum counted from 0. They outlive the row.
+/// Row of one of `choices`: a text, or an enum counted from 0. `choices` outlives the row.
 template <auto... Members>
 [[nodiscard]] constexpr Option option(std::string_view name, std::span<const std::string_view> choices,
                                       std::string_view meaning) {
@@ -161,14 +164,14 @@ template <auto... Members>
 /// Error of a value: "pid.integral_gain: got -1, expected a number in [0, 10] rad/(m s)".
 [[nodiscard]] Error refusal(std::string_view key, std::string_view got, const Option& option);
 
-/// The value in the option's unit; `owner` is the struct that the row was made for, here and below.
+/// Value of the field in the option's unit. `owner`, here and below, points to the struct that has the field.
 [[nodiscard]] OptionValue get(const Option& option, const void* owner);
 /// Sets a value. Fails with refusal(), and changes nothing, for a wrong type or a value out of range; `key`
 /// is the name in the message.
 [[nodiscard]] Result<void> set(const Option& option, std::string_view key, void* owner,
                                const OptionValue& value);
 
-/// Fails with refusal() for the first option that is out of its range; not-a-number is.
+/// Fails with refusal() for the first option that is out of its range or not a number.
 [[nodiscard]] Result<void> check_options(std::string_view group, std::span<const Option> options,
                                          const void* owner);
 

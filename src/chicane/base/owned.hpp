@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// A pointer that copies what it points to, for members behind an interface.
 #pragma once
 
 #include <memory>
@@ -6,9 +7,9 @@
 
 namespace chicane {
 
-/// Pointer like std::unique_ptr whose copy owns a copy, made by copy_of(const T&), which argument-dependent
-/// lookup finds and which may return null. For parts behind an interface of objects that are copied as
-/// values.
+/// Pointer like std::unique_ptr that can be copied: the copy owns a copy of the object, made by
+/// copy_of(const T&). Argument-dependent lookup finds that function, and it may return null. For classes that
+/// are copied as values and have members behind an interface.
 template <class T>
 class Owned {
  public:

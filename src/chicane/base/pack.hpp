@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
+// Mask, Bits and Pack: several doubles that one instruction works on at once, used like plain numbers.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 
 #include "chicane/base/compiler.hpp"
 #include "chicane/base/detail/elementary.hpp"
@@ -11,21 +11,11 @@
 
 namespace chicane {
 
-/// Calls f(std::integral_constant<std::size_t, 0>) … f(…<N − 1>): a loop that is always unrolled, and whose
-/// index is a constant.
-template <std::size_t N, class F>
-CHICANE_INLINE inline constexpr void unroll(F&& f) noexcept {
-  [&]<std::size_t... I>(std::index_sequence<I...>) CHICANE_INLINE {
-    (f(std::integral_constant<std::size_t, I>{}), ...);
-  }
-  (std::make_index_sequence<N>{});
-}
-
-/// Yes or no for each of N lanes.
+/// A truth value for each of N lanes: the result of a comparison of packs.
 template <class Arch, std::size_t N>
 struct Mask {
-  static constexpr std::size_t kWidth = N < Arch::kWidth ? N : Arch::kWidth;
-  static constexpr std::size_t kParts = N / kWidth;
+  static constexpr std::size_t kWidth = N < Arch::kWidth ? N : Arch::kWidth;  ///< lanes in a register
+  static constexpr std::size_t kParts = N / kWidth;                           ///< registers
   using Ops = pack_detail::Ops<Arch, kWidth>;
   typename Ops::Mask part[kParts];
 
@@ -34,7 +24,7 @@ struct Mask {
                                    // min or abs instead of if, ?:, && and ||
   // clang-format on
 
-  /// The first `count` lanes.
+  /// Mask that is set in the first `count` lanes.
   CHICANE_INLINE static Mask first(std::size_t count) noexcept {
     struct {
       typename Ops::Integer part[kParts];
@@ -42,7 +32,7 @@ struct Mask {
     for (std::size_t i = 0; i < N; ++i) lane.part[i / kWidth][i % kWidth] = i < count ? -1 : 0;
     return pack_detail::by_parts<Ops::from_bits, Mask>(lane);
   }
-  /// Lane i is bit i.
+  /// The mask as a number: bit i is lane i.
   [[nodiscard]] CHICANE_INLINE unsigned bits() const noexcept {
     unsigned result = 0;
     for (std::size_t p = 0; p < kParts; ++p) result |= Ops::bits(part[p]) << (p * kWidth);
@@ -67,8 +57,8 @@ struct Mask {
 /// The 64 bits of each lane as an integer, for branch-free elementary functions.
 template <class Arch, std::size_t N>
 struct Bits {
-  static constexpr std::size_t kWidth = N < Arch::kWidth ? N : Arch::kWidth;
-  static constexpr std::size_t kParts = N / kWidth;
+  static constexpr std::size_t kWidth = N < Arch::kWidth ? N : Arch::kWidth;  ///< lanes in a register
+  static constexpr std::size_t kParts = N / kWidth;                           ///< registers
   using Ops = pack_detail::Ops<Arch, kWidth>;
   typename Ops::Integer part[kParts];
 
@@ -96,7 +86,7 @@ struct Bits {
     for (std::size_t p = 0; p < kParts; ++p) r.part[p] = Ops::shift_left(a.part[p], count);
     return r;
   }
-  /// Zeros come in from the left.
+  /// Shifts right; fills with zeros from the left.
   CHICANE_INLINE friend Bits operator>>(const Bits& a, int count) noexcept {
     Bits r;
     for (std::size_t p = 0; p < kParts; ++p) r.part[p] = Ops::shift_right(a.part[p], count);
@@ -114,18 +104,18 @@ struct Bits {
   }
 };
 
-/// N doubles (2, 4, 8 or 16) that the instruction set `Arch` works on at once, in as many registers as that
-/// takes. Every operation works lane by lane and rounds as IEEE 754 says, so that results do not depend on
-/// the width of registers: Avx2, Avx512 and Neon, which have a fused multiply-add, give the same bits
-/// ("fused"), Baseline, which has none, gives others ("plain").
+/// N doubles (2, 4, 8 or 16), the lanes, in one or several registers of the instruction set `Arch`. Every
+/// operation works lane by lane and rounds by IEEE 754, so that results do not depend on the width of
+/// registers. Avx2, Avx512 and Neon have a fused multiply-add and give the same bits ("fused"); Baseline has
+/// none and gives others ("plain").
 ///
-/// Functions over any scalar take a Pack for it: arithmetic, comparison (to a Mask), select, min, max, abs,
-/// sqrt. A default-constructed Pack is not initialised.
+/// Templates over any scalar take a Pack: it has arithmetic, comparison (to a Mask), select, min, max, abs
+/// and sqrt. A default-constructed Pack is not initialised.
 template <class Arch, std::size_t N>
 struct Pack {
   static constexpr std::size_t kLanes = N;
-  static constexpr std::size_t kWidth = N < Arch::kWidth ? N : Arch::kWidth;
-  static constexpr std::size_t kParts = N / kWidth;
+  static constexpr std::size_t kWidth = N < Arch::kWidth ? N : Arch::kWidth;  ///< lanes in a register
+  static constexpr std::size_t kParts = N / kWidth;                           ///< registers
   using Instructions = Arch;
   using Ops = pack_detail::Ops<Arch, kWidth>;
   using Real = typename Ops::Real;
@@ -162,7 +152,7 @@ struct Pack {
   CHICANE_INLINE void store_unaligned(double* to) const noexcept {
     for (std::size_t p = 0; p < kParts; ++p) Memory::store_unaligned(to + p * kWidth, part[p]);
   }
-  /// 0, 1, 2, …
+  /// The pack 0, 1, 2, … N − 1.
   CHICANE_INLINE static Pack iota() noexcept {
     Pack r;
     for (std::size_t i = 0; i < N; ++i) r.set(i, static_cast<double>(i));
@@ -203,11 +193,11 @@ struct Pack {
     return compare<Ops::equal>(a, b);
   }
 
-  /// a · b + c; with one rounding where the instruction set has it.
+  /// a · b + c, rounded once if Arch::kFused, else twice.
   CHICANE_INLINE friend Pack fused_multiply_add(const Pack& a, const Pack& b, const Pack& c) noexcept {
     return each<Ops::fused_multiply_add>(a, b, c);
   }
-  /// c − a · b, likewise.
+  /// c − a · b, rounded once if Arch::kFused, else twice.
   CHICANE_INLINE friend Pack fused_negative_multiply_add(const Pack& a, const Pack& b,
                                                          const Pack& c) noexcept {
     return each<Ops::fused_negative_multiply_add>(a, b, c);
@@ -215,7 +205,7 @@ struct Pack {
   CHICANE_INLINE friend Pack select(const MaskType& m, const Pack& a, const Pack& b) noexcept {
     return each<Ops::select>(m, a, b);
   }
-  /// a < b ? a : b, and a > b ? a : b: the second one where a lane is not a number.
+  /// min is a < b ? a : b, max is a > b ? a : b: the second one in lanes where an argument is not a number.
   CHICANE_INLINE friend Pack min(const Pack& a, const Pack& b) noexcept { return each<Ops::min>(a, b); }
   CHICANE_INLINE friend Pack max(const Pack& a, const Pack& b) noexcept { return each<Ops::max>(a, b); }
   CHICANE_INLINE friend Pack sqrt(const Pack& a) noexcept { return each<Ops::sqrt>(a); }
@@ -231,9 +221,9 @@ struct Pack {
   CHICANE_INLINE friend Pack copysign(const Pack& magnitude, const Pack& sign) noexcept {
     return from_bits((bits_of(magnitude) & BitsType(INT64_MAX)) | (bits_of(sign) & BitsType(INT64_MIN)));
   }
-  /// Lanes that are numbers.
+  /// Lanes that are finite.
   CHICANE_INLINE friend MaskType is_finite(const Pack& a) noexcept { return a - a == Pack(0.0); }
-  /// Sums by halves, so that the order does not depend on registers.
+  /// Sum of the lanes, by halves, so that the order of additions does not depend on registers.
   CHICANE_INLINE friend double sum(const Pack& a) noexcept {
     return reduce(a, [](double x, double y) CHICANE_INLINE { return x + y; });
   }
@@ -251,6 +241,7 @@ struct Pack {
   CHICANE_INLINE static MaskType compare(const Pack& a, const Pack& b) noexcept {
     return pack_detail::by_parts<Op, MaskType>(a, b);
   }
+  /// One number from all lanes: op(first half, second half), until one lane is left.
   template <class Op>
   CHICANE_INLINE static double reduce(const Pack& a, Op op) noexcept {
     double value[N];
@@ -268,7 +259,7 @@ template <class Arch, std::size_t N>
   return x[0];
 }
 
-/// Rows become columns; N packs of N lanes.
+/// Transposes N packs of N lanes, each a row, block by block of the size of a register.
 template <class Arch, std::size_t N>
 CHICANE_INLINE inline void transpose(Pack<Arch, N> (&row)[N]) noexcept {
   using P = Pack<Arch, N>;
@@ -287,26 +278,27 @@ CHICANE_INLINE inline void transpose(Pack<Arch, N> (&row)[N]) noexcept {
   });
 }
 
-/// The same for plain numbers, so that formulas can be written once.
+/// a · b + c for plain numbers, with the rounding of a Pack of `Arch`: templates are written once for both.
 template <class Arch>
 [[nodiscard]] CHICANE_INLINE inline double fused_multiply_add(double a, double b, double c) noexcept {
   if constexpr (Arch::kFused) return __builtin_fma(a, b, c);
   return a * b + c;
 }
+/// c − a · b for plain numbers, with the rounding of a Pack of `Arch`.
 template <class Arch>
 [[nodiscard]] CHICANE_INLINE inline double fused_negative_multiply_add(double a, double b,
                                                                        double c) noexcept {
   if constexpr (Arch::kFused) return __builtin_fma(-a, b, c);
   return c - a * b;
 }
-/// One constant or another in each lane.
+/// The constant `a` in lanes where the mask is set, `b` in the others.
 template <class Arch, std::size_t N>
 [[nodiscard]] CHICANE_INLINE inline Pack<Arch, N> select(const Mask<Arch, N>& m, double a,
                                                          double b) noexcept {
   return select(m, Pack<Arch, N>(a), Pack<Arch, N>(b));
 }
 
-/// The elementary functions of math.hpp on packs: every lane has the bits of the scalar call.
+// Elementary functions of math.hpp on packs: every lane has the bits of the scalar call.
 template <class Arch, std::size_t N>
 [[nodiscard]] CHICANE_INLINE inline Pack<Arch, N> sin(const Pack<Arch, N>& x) noexcept {
   return elementary::sin(x);
@@ -352,7 +344,7 @@ template <class Arch, std::size_t N>
 [[nodiscard]] CHICANE_INLINE inline Pack<Arch, N> pow(const Pack<Arch, N>& x, double exponent) noexcept {
   return elementary::pow(x, exponent);
 }
-/// exp(exponent · log(x)), whatever the exponent: NaN for x < 0.
+/// exp(exponent · log(x)), for whole exponents, too: NaN for x < 0.
 template <class Arch, std::size_t N>
 [[nodiscard]] CHICANE_INLINE inline Pack<Arch, N> pow(const Pack<Arch, N>& x,
                                                       const Pack<Arch, N>& exponent) noexcept {
@@ -364,7 +356,7 @@ template <class Arch, std::size_t N>
   return sqrt(x * x + y * y);
 }
 
-// Hypotenuse of a pack and a constant.
+// Functions of a pack and a constant.
 template <class Arch, std::size_t N>
 [[nodiscard]] CHICANE_INLINE inline Pack<Arch, N> hypot(const Pack<Arch, N>& x, double y) noexcept {
   return hypot(x, Pack<Arch, N>(y));

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Errors, and results that are a value or an error.
 #pragma once
 
 #include <string>
@@ -21,7 +22,7 @@ struct Error {
 template <class T>
 using Result = tl::expected<T, Error>;
 
-/// The unhappy end of a function that returns Result: `return fail(ErrorCode::kIo, "...")`.
+/// Error as a Result, for functions that return one: `return fail(ErrorCode::kIo, "...")`.
 inline tl::unexpected<Error> fail(ErrorCode code, std::string message) {
   return tl::unexpected<Error>(Error{code, std::move(message)});
 }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
+// Symbol: a type without values, by which compilers refuse unsuitable formulas in few lines.
 #pragma once
 
 #include <type_traits>
 
 namespace chicane {
 
-// The comments behind deleted functions are what compilers show of them: as long as they have to be.
+// Compilers show the comment behind a deleted function with their message: it says what to write instead.
 // clang-format off
 
 /// Result of comparing symbols: selects between values, cannot be branched on.
@@ -16,9 +17,9 @@ Choice operator&(Choice, Choice);
 Choice operator|(Choice, Choice);
 Choice operator!(Choice);
 
-/// Placeholder for a variable of unknown type. The solver calls the functions of a structured problem with
-/// symbols before any other type, so that operations that no jet or pack has are refused first, in few lines.
-/// Declared only, never called.
+/// Placeholder for a variable of an optimal control problem. The solver calls the functions of a structured
+/// problem with symbols before any other type, so that operations that neither jets nor packs have are refused
+/// first. Functions of symbols are declared only, never called.
 struct Symbol {
   Symbol();
   Symbol(double constant);         // NOLINT: constants mix freely with symbols, as in formulas

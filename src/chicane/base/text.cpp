@@ -10,16 +10,16 @@
 namespace chicane {
 namespace {
 
-/// `value` by std::to_chars, in this format.
+/// `value` by std::to_chars, in the format of its further arguments.
 std::string written(double value, auto... format) {
   std::array<char, 64> buffer{};
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, format...).ptr;
   return {buffer.data(), end};
 }
 
-/// A number that is the whole text.
+/// Number written by the whole text.
 template <class Number>
-std::optional<Number> whole(std::string_view text) noexcept {
+std::optional<Number> parse_whole(std::string_view text) noexcept {
   Number value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc{} && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
@@ -28,15 +28,17 @@ std::optional<Number> whole(std::string_view text) noexcept {
 }  // namespace
 
 std::optional<double> number_in(std::string_view text) noexcept {
-  const std::optional<double> value = whole<double>(text);
+  const std::optional<double> value = parse_whole<double>(text);
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-std::optional<std::uint64_t> count_in(std::string_view text) noexcept { return whole<std::uint64_t>(text); }
+std::optional<std::uint64_t> count_in(std::string_view text) noexcept {
+  return parse_whole<std::uint64_t>(text);
+}
 
 Result<double> number_in(std::string_view key, std::string_view text, double low, double high) {
   const std::optional<double> value = number_in(text);
-  // A number that rounds to a bound counts as the bound.
+  // 1e-6: rounding of single precision, with which other programs compute their numbers.
   const auto rounding = [](double border) { return 1e-6 * std::max(1.0, std::fabs(border)); };
   if (value && *value >= low - rounding(low) && *value <= high + rounding(high))
     return std::clamp(*value, low, high);
@@ -50,9 +52,9 @@ Error refusal(std::string_view key, std::string_view text, std::string_view expe
 }
 
 std::string number_text(double value) {
-  const double size = std::fabs(value);
-  // Prefer digits without an exponent if they are as exact and short: doubles have 16 digits.
-  const bool is_plain = size == 0.0 || !std::isfinite(value) || (size >= 1e-4 && size < 1e16);
+  const double magnitude = std::fabs(value);
+  // No exponent from 1e-4 to 1e16: chosen because doubles have 16 digits, which need no more zeros there.
+  const bool is_plain = magnitude == 0.0 || !std::isfinite(value) || (magnitude >= 1e-4 && magnitude < 1e16);
   return written(value, is_plain ? std::chars_format::fixed : std::chars_format::scientific);
 }
 
@@ -61,11 +63,17 @@ std::string number_text(double value, int digits) {
 }
 
 std::string printable(std::string_view text) {
-  constexpr std::size_t kMost = 60;  // [byte] fits a line of a terminal with the message around it
+  constexpr std::size_t kMost = 60;  // [byte] chosen: fits a line of a terminal with the message around it
   std::string shown(text.substr(0, kMost));
   std::replace_if(
       shown.begin(), shown.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, '?');
   return shown.empty() ? "nothing" : text.size() > kMost ? shown + "…" : shown;
+}
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return result;
 }
 
 std::string base64(std::string_view bytes) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Texts: numbers to text and back in every locale, words of enumerations, texts of strangers in messages.
 #pragma once
 
 #include <algorithm>
@@ -13,18 +14,19 @@
 
 namespace chicane {
 
-/// The shortest text that reads back as the same bits: "0.1", "1000000", "1e-05", "nan", "-inf". Decimal
-/// point in every locale.
+/// Shortest text that reads back as the same bits: "0.1", "1000000", "1e-05", "nan", "-inf". Decimal point in
+/// every locale.
 [[nodiscard]] std::string number_text(double value);
 /// Text with `digits` significant digits: "0.05", "66.7". Decimal point in every locale.
 [[nodiscard]] std::string number_text(double value, int digits);
 
-/// The finite number that a whole text is: digits with a point in every locale, no blank, no plus sign.
+/// Finite number written by the whole text, with a decimal point in every locale; none for a text with blanks
+/// or a plus sign.
 [[nodiscard]] std::optional<double> number_in(std::string_view text) noexcept;
-/// A whole number of digits alone.
+/// Whole number written by the whole text in digits alone.
 [[nodiscard]] std::optional<std::uint64_t> count_in(std::string_view text) noexcept;
-/// Number in `text`, clamped to [low, high] if it rounds to a border; else refusal(key, text, "a number in
-/// [low, high]").
+/// Number written by `text` in [low, high]; a number beyond a border by its rounding (1e-6 of the border, or
+/// of 1) becomes the border. Else refusal(key, text, "a number in [low, high]").
 [[nodiscard]] Result<double> number_in(std::string_view key, std::string_view text, double low, double high);
 
 /// Error "KEY: got TEXT, expected EXPECTED", the text as printable() shows it.
@@ -40,8 +42,11 @@ namespace chicane {
 /// Words as a list: "udacity, road-car".
 [[nodiscard]] std::string joined(std::span<const std::string_view> words);
 
-/// Length of the UTF-8 sequence at the beginning of `text`; 0 when it is none (RFC 3629: no overlong forms,
-/// no surrogates). `text` is not empty.
+/// ASCII letters in lower case; other bytes as they are.
+[[nodiscard]] std::string lower(std::string_view text);
+
+/// Length [byte] of the UTF-8 character at the beginning of `text`; 0 if there is none (RFC 3629: no overlong
+/// forms, no surrogates). Pre: `text` is not empty.
 [[nodiscard]] constexpr std::size_t utf8_length(std::string_view text) noexcept {
   const auto byte = [&](std::size_t i) -> std::uint32_t {
     return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
@@ -61,18 +66,18 @@ namespace chicane {
 /// Severity of a state of the program. The numbers equal ROS 2's diagnostic_msgs/DiagnosticStatus.
 enum class Severity : std::uint8_t { kOk = 0, kWarning = 1, kError = 2 };
 
-/// One value of an enumeration, as programs and as people read it.
+/// Texts of one value of an enumeration, for programs and for people.
 template <class Enum>
 struct Word {
   Enum value;
-  std::string_view
-      name;  ///< snake_case: a key of JSON; in capitals and with a prefix a constant of a message
+  /// Key of JSON in snake_case; in capitals, with a prefix, the constant of a message.
+  std::string_view name;
   Severity severity;
-  std::string_view sentence;  ///< subject and verb, at most 14 words, without capital and full stop, so that
-                              ///< it can follow a colon
+  /// Subject and verb, at most 14 words, without capital and full stop: can follow a colon.
+  std::string_view sentence;
 };
 
-/// The row of a value; null for a number that is none of them.
+/// Row of a value; null for a number that is no value of the enumeration.
 template <class Enum>
 [[nodiscard]] constexpr const Word<Enum>* find_word(std::span<const Word<Enum>> words, Enum value) noexcept {
   const auto found =

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
+// Vec2: a vector of two doubles in a plane.
 #pragma once
 
 #include <cmath>
 
 namespace chicane {
 
-/// A point, direction or force in a plane; two doubles, zero by default. Each operation rounds as
-/// it is written in its components, from left to right.
+/// A point, direction or force in a plane; two doubles, zero by default. Operations round in the order in
+/// which their formulas are written, so that results have the same bits everywhere.
 class Vec2 {
  public:
   constexpr Vec2() noexcept = default;
@@ -39,8 +40,10 @@ class Vec2 {
   [[nodiscard]] friend constexpr bool operator==(const Vec2& a, const Vec2& b) noexcept = default;
 
   [[nodiscard]] constexpr double dot(const Vec2& b) const noexcept { return x_ * b.x_ + y_ * b.y_; }
+  /// Component of a × b out of the plane; positive where b points to the left of a.
+  [[nodiscard]] constexpr double cross(const Vec2& b) const noexcept { return x_ * b.y_ - y_ * b.x_; }
   [[nodiscard]] constexpr double squared_norm() const noexcept { return dot(*this); }
-  /// Length. Not by std::hypot, whose last bits depend on the library.
+  /// Length, by sqrt(): the last bits of std::hypot depend on the library.
   [[nodiscard]] double norm() const noexcept { return std::sqrt(squared_norm()); }
   [[nodiscard]] bool is_finite() const noexcept { return std::isfinite(x_) && std::isfinite(y_); }
 
@@ -48,7 +51,7 @@ class Vec2 {
   double x_ = 0.0, y_ = 0.0;
 };
 
-/// The lesser of each component, and the greater.
+/// Smaller value of each component, and the greater value below.
 [[nodiscard]] constexpr Vec2 min(const Vec2& a, const Vec2& b) noexcept {
   return {b.x() < a.x() ? b.x() : a.x(), b.y() < a.y() ? b.y() : a.y()};
 }

@@ -15,35 +15,37 @@ namespace {
 
 /// Input of a steering law.
 struct View {
-  const road::Path& line;  ///< through the waypoints just measured
-  road::Projection here;   ///< nearest place to the centre of mass
+  const road::Path& line;  ///< curve through the measured waypoints
+  road::Projection here;   ///< place of `line` nearest to the centre of mass
   double heading_error;    ///< yaw minus the line's heading there [rad]
   const model::Measurement& now;
   double elapsed;  ///< time since the previous step [s], 0 if unknown
 };
 
-/// Curve through the measured waypoints. Skips points that are not finite or repeat the one before.
+/// Curve through the measured waypoints.
 class WaypointLine {
  public:
+  /// Builds the curve; skips points that are not finite or repeat the one before. False without a curve.
   [[nodiscard]] bool see(const model::Measurement& now) noexcept {
     std::size_t count = 0;
     for (int i = 0; i < std::clamp(now.waypoint_count, 0, model::Measurement::kMaxWaypoints); ++i) {
       const Vec2& point = now.waypoints[static_cast<std::size_t>(i)];
       if (!std::isfinite(point.x()) || !std::isfinite(point.y())) continue;
-      if (count > 0 && (point - points_[count - 1]).norm() < 1e-3) continue;
+      if (count > 0 && (point - points_[count - 1]).norm() < kSamePoint) continue;
       points_[count++] = point;
     }
     return path_.rebuild({points_.data(), count}, false);
   }
   [[nodiscard]] const road::Path& path() const noexcept { return path_; }
-  [[nodiscard]] std::span<const Vec2> points() const noexcept { return points_; }
 
+  /// [m] chosen: far above rounding, far below the waypoints' spacing.
  private:
+  static constexpr double kSamePoint = 1e-3;
   road::Path path_ = road::Path::with_capacity(model::Measurement::kMaxWaypoints);
   std::array<Vec2, model::Measurement::kMaxWaypoints> points_{};
 };
 
-/// Controller of one steering law, with line, speed and report as in all baselines. `Law` has Options,
+/// Controller of one steering law; line, speed hold and report are those of all baselines. `Law` has Options,
 /// double steer(const View&), void configure(const Options&, const VehicleParams&) and void reset().
 template <class Law>
 class Baseline final : public CopyableController<Baseline<Law>>, public Tunable<typename Law::Options> {
@@ -89,7 +91,7 @@ class Baseline final : public CopyableController<Baseline<Law>>, public Tunable<
   }
 
  private:
-  /// Time since the last step [s]; 0 for a first step, and for a pause of a second or more.
+  /// Time since the last step [s]; 0 in a first step, and after a pause of a second or more (chosen).
   double elapsed(double time) noexcept {
     const double since = has_time_ ? time - last_time_ : 0.0;
     last_time_ = time;
@@ -97,6 +99,7 @@ class Baseline final : public CopyableController<Baseline<Law>>, public Tunable<
     return since > 0.0 && since < 1.0 ? since : 0.0;
   }
 
+  /// Result of a step with a command.
   const StepResult& answer(const View& view, const model::Command& command,
                            const SpeedHold::Wanted& wanted) noexcept {
     const model::Measurement& now = view.now;
@@ -120,6 +123,7 @@ class Baseline final : public CopyableController<Baseline<Law>>, public Tunable<
     return result_;
   }
 
+  /// Explains the command: inputs at their bounds, limiter of the speed.
   void explain_command(const model::Command& command, double speed,
                        const SpeedHold::Wanted& wanted) noexcept {
     Explanation& explanation = result_.report.explanation;
@@ -130,6 +134,7 @@ class Baseline final : public CopyableController<Baseline<Law>>, public Tunable<
     explanation.speed_limiter = limiter_of(speed, wanted.speed, wanted.limiter, explanation.active_now);
   }
 
+  /// Result of a step that cannot see the line.
   const StepResult& no_answer() noexcept {
     result_.answer = Answer::kNone;
     result_.report = {};
@@ -142,14 +147,15 @@ class Baseline final : public CopyableController<Baseline<Law>>, public Tunable<
   std::string_view name_;
   Law law_;
   SpeedHold speed_;
-  double steer_limit_;
-  double lowest_throttle_;
+  double steer_limit_;      ///< [rad]
+  double lowest_throttle_;  ///< pedal of full braking
   WaypointLine line_;
-  double last_time_ = 0.0;
+  double last_time_ = 0.0;  ///< time of the last step [s], if has_time_
   bool has_time_ = false;
   StepResult result_;
 };
 
+/// PID law on the cross-track error (PidOptions).
 class PidLaw {
  public:
   using Options = PidOptions;
@@ -166,7 +172,7 @@ class PidLaw {
     const double rate = view.now.speed * sin(view.heading_error);  // de/dt on a line that hardly turns
     const double integral = integral_ + error * view.elapsed;
     const double steer = law(error, integral, rate);
-    // Anti-windup: no more integral while it would only push the wheel further against its stop.
+    // Anti-windup: the integral does not grow while it would only push the wheel further against its stop.
     if (std::fabs(steer) < steer_limit_ || std::fabs(law(error, integral_, rate)) > std::fabs(steer))
       integral_ = integral;
     return steer;
@@ -174,16 +180,18 @@ class PidLaw {
   void reset() noexcept { integral_ = 0.0; }
 
  private:
+  /// Steering angle for the error [m], its integral [m s] and its rate [m/s]; left positive.
   [[nodiscard]] double law(double error, double integral, double rate) const noexcept {
     return -(options_.proportional_gain * error + options_.integral_gain * integral +
              options_.derivative_gain * rate);
   }
 
   PidOptions options_;
-  double steer_limit_ = 0.0;
-  double integral_ = 0.0;
+  double steer_limit_ = 0.0;  ///< [rad]
+  double integral_ = 0.0;     ///< of the cross-track error [m s]
 };
 
+/// Pure pursuit (PurePursuitOptions).
 class PurePursuitLaw {
  public:
   using Options = PurePursuitOptions;
@@ -203,7 +211,7 @@ class PurePursuitLaw {
     const double sine = sin(view.now.psi);
     const double dx = target.x() - (view.now.x - rear_axle_ * cosine);
     const double dy = target.y() - (view.now.y - rear_axle_ * sine);
-    const double sideways = cosine * dy - sine * dx;
+    const double sideways = cosine * dy - sine * dx;  // of the target from the rear axle, left positive [m]
     return atan(2.0 * wheelbase_ * sideways / std::max(dx * dx + dy * dy, 1e-6));
   }
   void reset() noexcept {}
@@ -214,6 +222,7 @@ class PurePursuitLaw {
   double wheelbase_ = 0.0;
 };
 
+/// Stanley's law (StanleyOptions).
 class StanleyLaw {
  public:
   using Options = StanleyOptions;
@@ -239,6 +248,7 @@ class StanleyLaw {
   double front_axle_ = 0.0;
 };
 
+/// Makes the controller of a law, if its options are valid.
 template <class Entry, class Law>
 Result<std::unique_ptr<Controller>> make(const typename Law::Options& options,
                                          const model::VehicleParams& vehicle) {
@@ -246,7 +256,7 @@ Result<std::unique_ptr<Controller>> make(const typename Law::Options& options,
   return std::make_unique<Baseline<Law>>(Entry::kName, options, vehicle);
 }
 
-/// Option rows of a law, followed by the rows of its speed hold, which is the member `Speed`.
+/// Rows of the options of a law, followed by those of its speed hold, the member `Speed`.
 template <auto Speed, std::size_t N>
 constexpr std::array<Option, N + 3> with_speed_hold(const std::array<Option, N>& law) {
   std::array<Option, N + 3> all{};
@@ -285,7 +295,7 @@ constexpr auto kStanleyOptions = with_speed_hold<&StanleyOptions::speed>(std::ar
 
 constexpr double kComfortableBraking = 3.0;  // [m/s²] assumed before a curve; chosen
 constexpr double kSampleSpacing = 2.0;       // [m] between samples of the curvature ahead; chosen
-constexpr int kMaxSamples = 100;             // limit of these samples: 200 m
+constexpr int kMaxSamples = 100;  // limit of these samples: 200 m, more than waypoints reach; chosen
 
 }  // namespace
 
@@ -314,7 +324,8 @@ SpeedHold::Wanted SpeedHold::reference(const road::Path& path, double s) const n
   for (int i = 0; i < kMaxSamples && i * kSampleSpacing <= sight; ++i) {
     const double ahead = i * kSampleSpacing;
     const double curvature = std::fabs(path.at(s + ahead).curvature);
-    const double limit_squared = options_.lateral_acceleration_limit / std::max(curvature, 1e-6);
+    const double limit_squared =
+        options_.lateral_acceleration_limit / std::max(curvature, 1e-6);  // straight: finite
     const double here_squared = limit_squared + 2.0 * kComfortableBraking * ahead;
     if (here_squared < wanted_squared) {
       wanted_squared = here_squared;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Baselines to compare MPC with: PID, pure pursuit and Stanley steering, with a common speed hold.
 #pragma once
 
 #include <memory>
@@ -13,14 +14,14 @@
 
 namespace chicane::controller {
 
-/// Speed hold shared by the baselines: throttle = speed_gain · (speed_reference − v) + what drag costs.
+/// Options of SpeedHold.
 struct SpeedHoldOptions {
   double speed_reference = 13.4;            ///< [m/s]
-  double speed_gain = 0.3;                  ///< throttle per m/s
-  double lateral_acceleration_limit = 8.0;  ///< slows for curvature by v² |κ| <= limit [m/s²]
+  double speed_gain = 0.3;                  ///< throttle per speed error [s/m]
+  double lateral_acceleration_limit = 8.0;  ///< limit of v² |κ| for the speed in bends [m/s²]
 };
 
-/// Steer on the cross-track error: δ = −(kp e + ki ∫e dt + kd de/dt).
+/// PID steering on the cross-track error: δ = −(kp e + ki ∫e dt + kd de/dt).
 struct PidOptions {
   double proportional_gain = 0.06;  ///< [rad/m]
   double integral_gain = 0.0;       ///< [rad/(m s)]
@@ -28,21 +29,22 @@ struct PidOptions {
   SpeedHoldOptions speed;
 };
 
-/// Steer along the circle through a point ahead on the path (Coulter 1992).
+/// Pure pursuit: steering along the circle through a point ahead on the path (Coulter 1992).
 struct PurePursuitOptions {
-  double lookahead_time = 0.8;  ///< [s]
-  double lookahead_min = 5.0;   ///< [m]
+  double lookahead_time = 0.8;  ///< distance of the point over speed [s]
+  double lookahead_min = 5.0;   ///< least distance of the point [m]
   SpeedHoldOptions speed;
 };
 
-/// Heading error plus arctan of the front axle's cross-track error over speed (Hoffmann et al. 2007).
+/// Stanley steering: δ = −eψ − arctan(gain e / (softening_speed + v)), e: cross-track error of the front axle
+/// (Hoffmann et al. 2007).
 struct StanleyOptions {
   double gain = 1.5;             ///< [1/s]
-  double softening_speed = 2.0;  ///< [m/s]
+  double softening_speed = 2.0;  ///< keeps the gain finite near standstill [m/s]
   SpeedHoldOptions speed;
 };
 
-/// Makes a controller. kInvalidArgument names an option outside the range in its row, here and below.
+/// Make the controllers. kInvalidArgument names an option outside the range in its row.
 [[nodiscard]] Result<std::unique_ptr<Controller>> make_pid(const PidOptions& options,
                                                            const model::VehicleParams& vehicle);
 [[nodiscard]] Result<std::unique_ptr<Controller>> make_pure_pursuit(const PurePursuitOptions& options,
@@ -50,6 +52,7 @@ struct StanleyOptions {
 [[nodiscard]] Result<std::unique_ptr<Controller>> make_stanley(const StanleyOptions& options,
                                                                const model::VehicleParams& vehicle);
 
+/// Entries of the controllers (controller_list.hpp).
 struct PidEntry {
   using Options = PidOptions;
   static constexpr std::string_view kName = "pid";
@@ -77,8 +80,8 @@ struct StanleyEntry {
   static constexpr auto kMake = &make_stanley;
 };
 
-/// Speed hold shared by the baselines: a proportional law on top of what drag costs, towards a reference that
-/// slows for the curvature ahead. No allocation.
+/// Speed hold of the baselines: throttle = speed_gain · (wanted − v) + the throttle that balances drag. The
+/// wanted speed is the reference, lower before bends. No allocation.
 class SpeedHold {
  public:
   SpeedHold(const SpeedHoldOptions& options, const model::VehicleParams& vehicle) noexcept
@@ -88,14 +91,15 @@ class SpeedHold {
     vehicle_ = vehicle;
   }
 
+  /// Wanted speed, and its limiter.
   struct Wanted {
     double speed = 0.0;  ///< [m/s]
     SpeedLimiter limiter = SpeedLimiter::kAsked;
   };
-  /// Speed wanted at arc length s of `path`: at most the reference, and slow enough to meet v² |κ| <= limit
-  /// everywhere ahead with comfortable braking.
+  /// Wanted speed at arc length `s` of `path` [m]: at most the reference, and low enough to meet v² |κ| <=
+  /// limit everywhere ahead with comfortable braking.
   [[nodiscard]] Wanted reference(const road::Path& path, double s) const noexcept;
-  /// Pedal in [-brake_throttle_limit, 1] towards `wanted` [m/s] at speed v [m/s].
+  /// Pedal in [-brake_throttle_limit, 1] at speed `v` [m/s] for the speed `wanted` [m/s].
   [[nodiscard]] double throttle(double wanted, double v) const noexcept;
 
  private:

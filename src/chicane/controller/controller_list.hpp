@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// List of controllers to choose from by name: options, names and make functions follow from one entry for
+// each.
 #pragma once
 
 #include <algorithm>
@@ -19,6 +21,7 @@
 namespace chicane::controller {
 
 namespace detail {
+/// Name of an entry with underscores in place of dashes.
 template <class Entry>
 inline constexpr auto kGroupText = [] {
   std::array<char, Entry::kName.size()> text{};
@@ -32,7 +35,7 @@ template <class Entry>
 inline constexpr std::string_view kOptionGroup{detail::kGroupText<Entry>.data(),
                                                detail::kGroupText<Entry>.size()};
 
-/// Whether the entry's make function accepts these: kInvalidArgument names the first value out of range.
+/// Checks options and vehicle of an entry. kInvalidArgument names the first value out of range.
 template <class Entry>
 [[nodiscard]] Result<void> check(const typename Entry::Options& options,
                                  const model::VehicleParams& vehicle) {
@@ -40,8 +43,8 @@ template <class Entry>
   return check_options(kOptionGroup<Entry>, Entry::options(), &options);
 }
 
-/// Controllers to choose from by name. What a run, its files, the command line and viewers know of them
-/// follows from their entries. An entry is a struct beside its controller:
+/// Controllers to choose from by name. Runs, files, the command line and viewers use these entries only. An
+/// entry is a struct beside its controller:
 ///
 ///   struct PidEntry {
 ///     using Options = PidOptions;                        // a struct of its own
@@ -56,41 +59,42 @@ template <class Entry>
 template <class... Entries>
 class ControllerList {
  public:
-  /// The options of all of them: std::get<PidOptions>(options).
+  /// Options of all controllers; read by std::get<PidOptions>(options).
   using Options = std::tuple<typename Entries::Options...>;
 
-  /// Type-free description of an entry.
+  /// Entry without its type.
   struct Kind {
     std::string_view name;
-    std::string_view group;
-    std::string_view meaning;
-    std::string_view speed_option;  ///< empty where it has none
+    std::string_view group;         ///< kOptionGroup
+    std::string_view meaning;       ///< one line for people
+    std::string_view speed_option;  ///< option that --speed-mps sets; empty: none
+    /// Functions of the entry, for the options of all controllers.
     Result<std::unique_ptr<Controller>> (*make)(const Options&, const model::VehicleParams&);
     std::vector<OptionContradiction> (*contradictions)(const Options&);
   };
 
-  static constexpr std::array<std::string_view, sizeof...(Entries)> kNames{Entries::kName...};
+  static constexpr std::array<std::string_view, sizeof...(Entries)> kNames{Entries::kName...};  ///< in order
 
+  /// All entries, in order.
   [[nodiscard]] static std::span<const Kind> kinds() noexcept {
     static constexpr std::array<Kind, sizeof...(Entries)> kKinds{kind<Entries>()...};
     return kKinds;
   }
   /// Entry of this name; null if there is none.
   [[nodiscard]] static const Kind* find(std::string_view name) noexcept {
-    for (const Kind& kind : kinds()) {
+    for (const Kind& kind : kinds())
       if (kind.name == name) return &kind;
-    }
     return nullptr;
   }
 
-  /// Calls visit.template operator()<Entry>() for each, in order.
+  /// Calls visit.template operator()<Entry>() for each entry, in order.
   template <class Visitor>
   static void for_each(Visitor visit) {
     (visit.template operator()<Entries>(), ...);
   }
 
   /// Makes a controller. kInvalidArgument "controller: got mpc, expected one of pid, ...", or the error of
-  /// the entry's own function.
+  /// the entry's make function.
   [[nodiscard]] static Result<std::unique_ptr<Controller>> make(std::string_view name, const Options& options,
                                                                 const model::VehicleParams& vehicle) {
     if (const Kind* kind = find(name)) return kind->make(options, vehicle);
@@ -98,8 +102,7 @@ class ControllerList {
                 "controller: got " + printable(name) + ", expected one of " + joined(kNames));
   }
 
-  /// Gives a controller of this list its options while it drives (controller/controller.hpp); others do not
-  /// care.
+  /// Applies options to a controller of this list while it drives (Tunable); no effect on other controllers.
   static void configure(Controller& controller, const Options& options,
                         const model::VehicleParams& vehicle) noexcept {
     (configure_as<Entries>(controller, options, vehicle), ...);

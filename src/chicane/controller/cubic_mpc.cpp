@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The controller `cubic-mpc`: fit of the line, roll-forward, solve, command.
+// The controller `cubic-mpc`: roll-forward over the delay, fit of the line, solve, command; and its table of
+// options.
 #include "chicane/controller/cubic_mpc.hpp"
 
 #include <algorithm>
@@ -20,13 +21,13 @@
 namespace chicane::controller {
 namespace {
 
-// Limit of iterations. One solve in thousands needs more than 40: when the cubic reaches far beyond the
+// Limit of iterations; chosen: one solve in thousands needs more than 40, if the cubic reaches far beyond the
 // waypoints.
 constexpr int kMaxIterations = 100;
 constexpr int kReferencePoints = 32;  // points of the line that viewers draw; chosen
 
-/// Factor of the speed in the roll-forward: a write-up may take miles per hour for metres per second.
-double rolled_unit(const CubicMpcOptions& options) noexcept {
+/// Speed of the roll-forward for 1 m/s (CubicMpcOptions::roll_forward_in_mph).
+double roll_forward_unit(const CubicMpcOptions& options) noexcept {
   return options.roll_forward_in_mph ? mps_to_mph(1.0) : 1.0;
 }
 
@@ -39,7 +40,7 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
         steer_sign_{options.steering_right_positive ? -1.0 : 1.0},
         stages_{options.horizon_steps - 1},
         roll_forward_{options.latency_handling, options.latency, vehicle.kinematic_length,
-                      rolled_unit(options), options.latency_acceleration_term},
+                      roll_forward_unit(options), options.latency_acceleration_term},
         problem_{options, vehicle},
         solver_{std::move(solver)} {
     reset();
@@ -51,8 +52,8 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
     if (!std::isfinite(now.time + now.steer + now.throttle) || !now.is_finite()) return no_answer(now);
     start_ = roll_forward_.predict(now);  // state when the command acts
     start_time_ = now.time + roll_forward_.compensated();
-    if (!see_line(now)) return no_answer(now);  // waypoints from that state, as a cubic
-    shift_warm_start();                         // last answer, moved on by the elapsed time
+    if (!see_line(now)) return no_answer(now);  // cubic through the waypoints, seen from that state
+    shift_warm_start();                         // last answer, shifted by the elapsed time
     solve(now, deadline);
     if (!usable(result_.report.solve.status)) return no_answer(now);
     return accept();
@@ -60,16 +61,16 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
 
   void configure(const CubicMpcOptions& options, const model::VehicleParams& vehicle) noexcept override {
     const double steer_sign = options.steering_right_positive ? -1.0 : 1.0;
-    const bool means_the_same = steer_sign == steer_sign_;  // inputs of the last answer stay valid
+    const bool stays_valid = steer_sign == steer_sign_;  // inputs of the last answer keep their sign
     const double ratio = options.step_length / problem_.dt;
     uses_polar_ = options.polar_waypoints;
     line_order_ = options.line_order;
     steer_sign_ = steer_sign;
     stages_ = options.horizon_steps - 1;
     roll_forward_.configure(options.latency_handling, options.latency, vehicle.kinematic_length,
-                            rolled_unit(options), options.latency_acceleration_term);
+                            roll_forward_unit(options), options.latency_acceleration_term);
     problem_ = CubicProblem{options, vehicle};
-    if (has_answer_ && means_the_same) {
+    if (has_answer_ && stays_valid) {
       solver::resample(answer_, stages_, ratio);
     } else {
       forget_warm_start();
@@ -91,7 +92,8 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
   }
 
  private:
-  /// Fits the line in the frame of start_, and reports the measured position's offset from it.
+  /// Fits the line in the frame of start_, and reports the offset of the measured position. False without a
+  /// line.
   bool see_line(const model::Measurement& now) noexcept {
     const LocalPoints local =
         uses_polar_ ? to_car_frame_polar(now, start_.pose) : to_car_frame(now, start_.pose);
@@ -120,22 +122,26 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
             now.throttle};
   }
 
+  /// Solves from the present guess, and measures the time.
   void solve(const model::Measurement& now, const Deadline& deadline) noexcept {
     const double started = deadline.elapsed();
     result_.report.solve = solver_->solve(problem_, initial_state(now), answer_, deadline);
     result_.report.solve_time = deadline.elapsed() - started;
   }
 
+  /// Shifts the last answer by the time since its start: the guess of this step.
   void shift_warm_start() noexcept {
     if (has_answer_) solver::shift(answer_, (start_time_ - answer_time_) / problem_.dt);
   }
 
+  /// Makes zero inputs the guess.
   void forget_warm_start() noexcept {
     has_answer_ = false;
     answer_.horizon = stages_;
     answer_.u.fill({});
   }
 
+  /// Result of a step with a usable answer of the solver.
   const StepResult& accept() noexcept {
     has_answer_ = true;
     result_.answer = Answer::kDrive;
@@ -146,6 +152,7 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
     return result_;
   }
 
+  /// Fills the explanation of the report.
   void explain_answer() noexcept {
     Explanation& explanation = result_.report.explanation;
     explain<CubicTerms>(problem_, answer_, explanation);
@@ -154,6 +161,7 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
         limiter_of(start_.speed, explanation.speed_limit, SpeedLimiter::kAsked, explanation.active_now);
   }
 
+  /// Result of a step without an answer.
   const StepResult& no_answer(const model::Measurement& now) noexcept {
     forget_warm_start();
     result_.answer = Answer::kNone;
@@ -161,8 +169,8 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
     return result_;
   }
 
-  /// Writes the answer in W. With the latency inside the model an input acts one stage late, and is listed
-  /// with the state that it acts on.
+  /// Fills the plan: the answer in W. With the latency inside the model an input acts one stage late; a point
+  /// has the input that acts on its state.
   void write_plan() noexcept {
     Plan& plan = result_.plan;
     const int late = problem_.acts_late ? 1 : 0;
@@ -185,6 +193,7 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
     }
   }
 
+  /// Point of W in the frame of start_ [m].
   [[nodiscard]] Vec2 to_start_frame(double x, double y) const noexcept {
     const double cosine = cos(start_.pose.psi);
     const double sine = sin(start_.pose.psi);
@@ -193,29 +202,30 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
     return {cosine * dx + sine * dy, cosine * dy - sine * dx};
   }
 
+  /// Point of the frame of start_ in W [m].
   [[nodiscard]] Vec2 to_world(double x, double y) const noexcept {
     const double cosine = cos(start_.pose.psi);
     const double sine = sin(start_.pose.psi);
     return {start_.pose.x + cosine * x - sine * y, start_.pose.y + sine * x + cosine * y};
   }
 
-  bool uses_polar_;
-  int line_order_;
-  double steer_sign_;  ///< factor from the model's own steering sign to ours, and back
-  int stages_;         ///< intervals: one less than states
+  bool uses_polar_;    ///< CubicMpcOptions::polar_waypoints
+  int line_order_;     ///< CubicMpcOptions::line_order
+  double steer_sign_;  ///< sign of the model's steering: 1 for left positive, else −1
+  int stages_;         ///< number of intervals of the horizon
   RollForward roll_forward_;
   CubicProblem problem_;
   Owned<CubicSolver> solver_;
-  Motion start_;              ///< start of the horizon
-  double start_time_ = 0.0;   ///< [s]
+  Motion start_;              ///< start of the horizon: motion when the command acts, in W
+  double start_time_ = 0.0;   ///< time when the command acts [s]
   CubicTrajectory answer_;    ///< last usable solve, in the frame of its start
   double answer_time_ = 0.0;  ///< start of answer_ [s]
-  bool has_answer_ = false;
+  bool has_answer_ = false;   ///< answer_ is usable as a guess
   StepResult result_;
 };
 
 using C = CubicMpcOptions;
-constexpr double kHighestWeight = 1e6;
+constexpr double kHighestWeight = 1e6;  // limit of the weights; chosen, far above useful ones
 constexpr std::array<std::string_view, 5> kLatencyHandlings{
     "none", "roll-forward", "measured", "position-only", "inside-model"};  // names in the order of the enum
 constexpr std::array kOptions{
@@ -278,7 +288,7 @@ std::vector<OptionContradiction> CubicMpcEntry::contradictions(const CubicMpcOpt
         {"lateral_error_integrated",
          "got true, expected cubic_mpc.heading_error_integrated=true beside it: the write-up has both errors "
          "from step to step"}};
-  constexpr double kSame = 1e-9;  // [s]: the same time, written in ms and in s
+  constexpr double kSame = 1e-9;  // [s] rounding of a time that is written in ms and in s
   const bool shifts_by_a_step = options.latency_handling == LatencyHandling::kInsideModel;
   if (!shifts_by_a_step || std::fabs(options.latency - options.step_length) <= kSame) return {};
   return {{"latency", "got " + number_text(options.latency * 1e3, 6) +

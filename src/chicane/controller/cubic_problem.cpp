@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The cubic controller's inputs: fit of the line ahead in the car's frame, and roll-forward over the latency.
+// Fit of the line ahead in the car's frame, and roll-forward over the latency, for the controller
+// `cubic-mpc`.
 #include "chicane/controller/cubic_problem.hpp"
 
 #include <algorithm>
@@ -8,13 +9,14 @@
 namespace chicane::controller {
 namespace {
 
-constexpr std::size_t kRows = model::Measurement::kMaxWaypoints;
-constexpr std::size_t kColumns = 4;
+constexpr std::size_t kRows = model::Measurement::kMaxWaypoints;  // limit of fitted points
+constexpr std::size_t kColumns = 4;                               // coefficients of a cubic
 
-/// Least length of a column after elimination of the columns before it, share of its own: a shorter one adds
-/// no information.
+/// Least length of a column after elimination of the columns before it, over its full length; chosen above
+/// rounding. A shorter column adds no information.
 constexpr double kRankTolerance = 1e-9;
 
+/// Waypoints in the frame of `car`; `to_local` turns their offsets from the car in W.
 template <class Convert>
 LocalPoints convert(const model::Measurement& now, const model::Pose& car, const Convert& to_local) noexcept {
   LocalPoints local;
@@ -32,6 +34,7 @@ class LeastSquares {
  public:
   explicit LeastSquares(int order) noexcept : used_columns_{static_cast<std::size_t>(order) + 1} {}
 
+  /// Adds a point.
   void add(double t, double y) noexcept {
     double power = 1.0;
     for (auto& column : columns_) {
@@ -41,6 +44,7 @@ class LeastSquares {
     y_[rows_++] = y;
   }
 
+  /// Coefficients c0 … c3; 0 for powers that the points do not determine.
   std::array<double, kColumns> solve() noexcept {
     std::array<bool, kColumns> is_used{};
     std::array<double, kColumns> diagonal{};
@@ -67,14 +71,15 @@ class LeastSquares {
  private:
   using Column = std::array<double, kRows>;
 
+  /// Length of a column from row `from` on.
   double norm(const Column& column, std::size_t from) const noexcept {
     double sum = 0.0;
     for (std::size_t i = from; i < rows_; ++i) sum += column[i] * column[i];
     return std::sqrt(sum);
   }
 
-  /// Householder reflection that maps column j's rows from `row` on to (diagonal, 0, ...); applied to all
-  /// that follows.
+  /// Applies to all columns after column j, and to y, the Householder reflection that maps column j, from
+  /// `row` on, to (diagonal, 0, …). `length`: norm of column j from `row` on. Returns the diagonal.
   double reflect(std::size_t j, std::size_t row, double length) noexcept {
     const double diagonal = columns_[j][row] > 0.0 ? -length : length;
     Column normal = columns_[j];
@@ -90,10 +95,10 @@ class LeastSquares {
     return diagonal;
   }
 
-  std::array<Column, kColumns> columns_{};
+  std::array<Column, kColumns> columns_{};  ///< powers of t by point
   Column y_{};
-  std::size_t used_columns_;
-  std::size_t rows_ = 0;
+  std::size_t used_columns_;  ///< order + 1
+  std::size_t rows_ = 0;      ///< number of points
 };
 
 }  // namespace
@@ -124,9 +129,9 @@ bool fit_cubic(std::span<const Vec2> points, Cubic& fit, int order) noexcept {
     low = std::min(low, point.x());
     high = std::max(high, point.x());
   }
-  if (!(high - low > 1e-3)) return false;
+  if (!(high - low > 1e-3)) return false;  // [m] extent along x: 1 mm
 
-  // Scale to powers of t = x / scale in [-1, 1]: powers of x itself differ by a factor of a million.
+  // Scale to powers of t = x / scale in [-1, 1], because powers of x itself differ by a factor of a million.
   const double scale = std::max(std::fabs(low), std::fabs(high));
   LeastSquares system{order};
   for (const Vec2& point : points) system.add(point.x() / scale, point.y());
@@ -141,12 +146,11 @@ bool fit_cubic(std::span<const Vec2> points, Cubic& fit, int order) noexcept {
 
 namespace {
 
-/// Largest latency that is accepted from a measurement of the loop time [s]: beyond it the clock is wrong,
-/// not the loop late. Chosen.
+/// Largest latency that is taken from a measured loop time [s]: beyond it the clock is wrong, not the loop
+/// late; chosen.
 constexpr double kMaxLatency = 0.5;
 
-}  // namespace
-
+/// Equation 14 (docs/the_five_systems.md): x and y move on by the latency [s].
 Motion roll_position(const Motion& from, double latency) noexcept {
   Motion to = from;
   to.pose.x += from.speed * cos(from.pose.psi) * latency;
@@ -154,6 +158,8 @@ Motion roll_position(const Motion& from, double latency) noexcept {
   return to;
 }
 
+/// Equation 15: one Euler step of the kinematic model over the latency, ψ += v δ L / L_f, v += a L. The
+/// throttle of `acting` is taken for the acceleration a [m/s²].
 Motion roll_kinematic(const Motion& from, const model::Command& acting, double latency,
                       double kinematic_length) noexcept {
   Motion to = roll_position(from, latency);
@@ -162,6 +168,8 @@ Motion roll_kinematic(const Motion& from, const model::Command& acting, double l
   return to;
 }
 
+/// Equation 16, which goes with the measured latency: ψ += v tan δ L / L_f + a tan δ L² / (2 L_f).
+/// `has_term`: with the last term, of the acceleration.
 Motion roll_accelerating(const Motion& from, const model::Command& acting, double latency,
                          double kinematic_length, bool has_term) noexcept {
   const double curvature = tan(acting.steer) / kinematic_length;
@@ -172,9 +180,10 @@ Motion roll_accelerating(const Motion& from, const model::Command& acting, doubl
   return to;
 }
 
+}  // namespace
+
 Motion RollForward::predict(const model::Measurement& now) noexcept {
-  const bool is_rolled = handling_ != LatencyHandling::kNone && handling_ != LatencyHandling::kInsideModel;
-  const double unit = is_rolled ? speed_unit_ : 1.0;
+  const double unit = is_rolled() ? speed_unit_ : 1.0;
   Motion rolled = roll(now, {{now.x, now.y, now.psi}, now.speed * unit});
   rolled.speed /= unit;
   return rolled;
@@ -197,9 +206,6 @@ Motion RollForward::roll(const model::Measurement& now, const Motion& seen) noex
   return seen;
 }
 
-double RollForward::compensated() const noexcept {
-  const bool is_rolled = handling_ != LatencyHandling::kNone && handling_ != LatencyHandling::kInsideModel;
-  return is_rolled ? latency_ : 0.0;
-}
+double RollForward::compensated() const noexcept { return is_rolled() ? latency_ : 0.0; }
 
 }  // namespace chicane::controller

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Compiled once for each instruction set (base/instruction_set.hpp).
+// Solver of the problem of `cubic-mpc`. This file is compiled once for each instruction set
+// (base/instruction_set.hpp).
 #include "chicane/controller/cubic_solver.hpp"
 
 #include "chicane/solver/ocp_solver.hpp"
@@ -7,6 +8,7 @@
 namespace chicane::controller {
 namespace {
 
+/// Solver with the instruction set `Arch`.
 template <class Arch>
 class ArchSolver final : public CubicSolver {
  public:

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Solver of the optimal control problem of `cubic-mpc`, behind an interface that hides the instruction set.
 #pragma once
 
 #include <memory>
@@ -20,9 +21,10 @@ class CubicSolver {
   /// Solves from `start`, with `trajectory` as the guess and the answer, as OcpSolver::solve() does.
   virtual solver::SolveReport solve(const CubicProblem& problem, const CubicProblem::State& start,
                                     CubicTrajectory& trajectory, Deadline deadline) noexcept = 0;
-  /// A solver with the same options: no other state is kept between solves.
+  /// Solver with the same options. There is no other state between solves.
   [[nodiscard]] virtual std::unique_ptr<CubicSolver> copy() const = 0;
 };
+/// Copy of a solver, for Owned.
 [[nodiscard]] inline std::unique_ptr<CubicSolver> copy_of(const CubicSolver& solver) { return solver.copy(); }
 
 /// Makes the solver for one instruction set; defined in cubic_solver.cpp, which is compiled for each.
@@ -33,8 +35,8 @@ template <class Arch>
 /// `cubic-mpc`.
 [[nodiscard]] std::unique_ptr<CubicSolver> make_cubic_solver();
 
-/// The controller `cubic-mpc` with another solver of its problem, to compare solvers on the road. Pre:
-/// `solver` is not null.
+/// Makes the controller `cubic-mpc` with another solver, to compare solvers on the road. Pre: `solver` is not
+/// null. Fails as make_cubic_mpc().
 [[nodiscard]] Result<std::unique_ptr<Controller>> make_cubic_mpc_with(const CubicMpcOptions& options,
                                                                       const model::VehicleParams& vehicle,
                                                                       std::unique_ptr<CubicSolver> solver);

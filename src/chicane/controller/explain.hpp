@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Explanation of the answer to an optimal control problem: cost by term, active constraints, limiter of the
+// speed.
 #pragma once
 
 #include <array>
@@ -15,19 +17,18 @@
 #include "chicane/solver/problem.hpp"
 #include "chicane/tracking/tracking_problem.hpp"
 
-/// Explanation of an optimal control problem's answer: cost by term, active constraints. Evaluates the
-/// residuals once along the plan (about 40 ns a stage), after the solver is done; changes nothing.
 namespace chicane::controller {
 
-/// Groups of TrackingProblem's residuals, in the order of their names.
+/// Terms of the cost of TrackingProblem: groups of its residuals, in the order of their names.
 struct TrackingTerms {
   enum Group : std::uint8_t { kLateral, kHeading, kSpeed, kSteerRate, kJerk, kEdge, kSlip, kFriction, kYaw };
   static constexpr std::array<std::string_view, 9> kNames{
       "lateral", "heading", "speed", "steer_rate", "jerk", "edge", "slip", "friction", "end_yaw_rate"};
+  /// Group of each residual of a stage, and of the end of the horizon.
   static constexpr std::array<Group, tracking::TrackingProblem::kNr> kStage{
       kLateral, kHeading, kSpeed, kSteerRate, kJerk, kEdge, kEdge, kSlip, kSlip, kSteerRate, kFriction};
   static constexpr std::array<Group, tracking::TrackingProblem::kNe> kEnd{kLateral, kHeading, kSpeed, kYaw};
-  /// Residuals that are not zero where a constraint is active.
+  /// Residuals of a stage that are above zero while a soft constraint is active.
   static constexpr std::array<std::pair<std::size_t, Constraint>, 6> kOneSided{
       {{5, Constraint::kLeftEdge},
        {6, Constraint::kRightEdge},
@@ -37,7 +38,7 @@ struct TrackingTerms {
        {10, Constraint::kFrictionEllipse}}};
 };
 
-/// Groups of CubicProblem's residuals: the terms of equation 7, in its order (docs/the_five_systems.md).
+/// Terms of the cost of CubicProblem: those of equation 7, in its order (docs/the_five_systems.md).
 struct CubicTerms {
   static constexpr std::array<std::string_view, 8> kNames{
       "lateral", "heading", "speed", "steer", "throttle", "steer_change", "throttle_change", "speed_steer"};
@@ -46,11 +47,11 @@ struct CubicTerms {
   static constexpr std::array<std::pair<std::size_t, Constraint>, 0> kOneSided{};
 };
 
-/// Bits of the inputs (steering, pedal or acceleration) that stand at a bound.
+/// Bits of Constraint for inputs `u` (steering, pedal or acceleration) at their bounds.
 [[nodiscard]] inline std::uint32_t bounds_met(const std::array<double, 2>& u,
                                               const std::array<double, 2>& low,
                                               const std::array<double, 2>& high) noexcept {
-  constexpr double kTouch = 1e-6;  // tolerance at a bound, in the input's unit
+  constexpr double kTouch = 1e-6;  // tolerance at a bound, in the input's unit; chosen above rounding
   std::uint32_t bits = 0;
   if (u[0] <= low[0] + kTouch || u[0] >= high[0] - kTouch) bits |= bit(Constraint::kSteerLimit);
   if (u[1] >= high[1] - kTouch) bits |= bit(Constraint::kThrottleMax);
@@ -58,14 +59,15 @@ struct CubicTerms {
   return bits;
 }
 
-/// Fills cost terms and active constraints from an answer. `Trajectory` has horizon, x and u.
+/// Fills cost terms and active constraints from an answer. Evaluates the residuals once along the plan: about
+/// 40 ns a stage. `Terms`: a struct as above; `Trajectory` has horizon, x and u.
 template <class Terms, class Problem, class Trajectory>
 void explain(const Problem& problem, const Trajectory& answer, Explanation& explanation) noexcept {
   static_assert(Terms::kNames.size() <= Explanation::kMaxCostTerms);
   explanation.cost_terms = {};
   explanation.cost_term_count = static_cast<int>(Terms::kNames.size());
   explanation.active_now = explanation.active_ahead = 0;
-  const auto pay = [&](const auto& residual, const auto& groups) {
+  const auto add_cost = [&](const auto& residual, const auto& groups) {
     for (std::size_t i = 0; i < groups.size(); ++i)
       explanation.cost_terms[groups[i]] += 0.5 * residual[i] * residual[i];
   };
@@ -73,37 +75,36 @@ void explain(const Problem& problem, const Trajectory& answer, Explanation& expl
     const auto& x = answer.x[static_cast<std::size_t>(k)];
     const auto& u = answer.u[static_cast<std::size_t>(k)];
     const auto residual = solver::to_array<double>(problem.residual(k, x, u));
-    pay(residual, Terms::kStage);
+    add_cost(residual, Terms::kStage);
     std::uint32_t active = bounds_met(u, problem.input_lower(k), problem.input_upper(k));
-    for (const auto& [row, constraint] : Terms::kOneSided) {
+    for (const auto& [row, constraint] : Terms::kOneSided)
       if (residual[row] > 0.0) active |= bit(constraint);
-    }
     if (k == 0) explanation.active_now = active;
     explanation.active_ahead |= active;
   }
   const auto& end = answer.x[static_cast<std::size_t>(answer.horizon)];
-  pay(solver::to_array<double>(problem.terminal_residual(end)), Terms::kEnd);
+  add_cost(solver::to_array<double>(problem.terminal_residual(end)), Terms::kEnd);
 }
 
-/// Limiter of a car at `speed` [m/s] whose limit is `limit` [m/s] for the reason `by`: the drive, if the
-/// throttle is at its bound and the limit is not reached.
+/// Limiter of the speed of a car at `speed` [m/s] whose allowed speed is `limit` [m/s] for the reason `by`.
+/// If that is not reached, the limiter is the drive at full throttle.
 [[nodiscard]] inline SpeedLimiter limiter_of(double speed, double limit, SpeedLimiter by,
                                              std::uint32_t active_now) noexcept {
-  constexpr double kReached = 0.5;  // [m/s]
+  constexpr double kReached = 0.5;  // [m/s] below the limit that counts as reached; chosen
   const bool is_reached = speed >= limit - kReached;
   if (!is_reached && (active_now & bit(Constraint::kThrottleMax)) != 0U) return SpeedLimiter::kPower;
-  // Below the wanted speed other weights than the speed's hold the car back.
+  // Below the wanted speed other terms of the cost than the speed's hold the car back.
   return !is_reached && by == SpeedLimiter::kAsked ? SpeedLimiter::kPartThrottle : by;
 }
 
-/// Limiter of a planned lap at a place: a constraint that is active in the first stage, else the limit that
-/// the lap was planned against there.
+/// Limiter of the speed at a place of a planned lap: a constraint that is active in the first stage, else the
+/// limit of the car that the planned motion is at.
 [[nodiscard]] inline SpeedLimiter limiter_of_lap(const road::ReferenceLine::Demand& planned,
                                                  const model::VehicleParams& car,
                                                  std::uint32_t active_now) noexcept {
-  constexpr double kSlowing = 0.5;  // planned deceleration beyond rolling [m/s²]
-  constexpr double kNearly = 0.9;   // share of the grip and of the steering rate
-  constexpr double kNoMore = 0.3;   // acceleration that the drive still has [m/s²]
+  constexpr double kSlowing = 0.5;  // [m/s²] deceleration beyond rolling that is braking; chosen
+  constexpr double kNearly = 0.9;   // share of grip or steering rate that is at the limit; chosen
+  constexpr double kNoMore = 0.3;   // [m/s²] reserve of the drive that is none; chosen
   const auto is_active = [&](auto... constraints) { return (active_now & (bit(constraints) | ...)) != 0U; };
   if (is_active(Constraint::kThrottleMax)) return SpeedLimiter::kPower;
   const double v = planned.speed;
@@ -124,8 +125,8 @@ void explain(const Problem& problem, const Trajectory& answer, Explanation& expl
   return SpeedLimiter::kPlan;
 }
 
-/// Reports planned speed and limiter at the place where the command acts; `raced`: the car that a lap was
-/// planned for.
+/// Fills allowed speed and limiter at the place where the command acts. `raced`: the car that the planned lap
+/// is for; null without a planned lap.
 inline void explain_speed(const road::ReferenceLine::Demand& planned, double speed,
                           const model::VehicleParams* raced, Explanation& explanation) noexcept {
   explanation.speed_limit = planned.speed;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Enumerations of the guard, source of a command (Rung) and reason of an intervention (GuardReason), with
+// their words.
 #pragma once
 
 #include <array>
@@ -9,10 +11,9 @@
 
 #include "chicane/base/text.hpp"
 
-/// The tables of Rung and GuardReason. A row makes the enumerator, its name in JSON, its constant in the
-/// messages, its sentence in terminal and dashboard, and its severity in /diagnostics. Rows are numbered in
-/// order; recordings keep the numbers, so a new row goes to the end.
-/// Columns: enumerator, name, severity, sentence (base/text.hpp).
+/// Table of Rung. A row makes the enumerator, its name in JSON, its constant in the messages, its sentence in
+/// terminal and dashboard, and its severity in /diagnostics. Rows are numbered in order, and recordings keep
+/// the numbers: a new row goes to the end. Columns: enumerator, name, severity, sentence (base/text.hpp).
 // clang-format off
 #define CHICANE_RUNGS(ROW)                                                                                       \
   ROW(kController, "controller", kOk, "the controller drives")                                                   \
@@ -23,7 +24,8 @@
   ROW(kStopOnRoad, "stop_on_road", kError, "the controller has no plan and stops the car along the road")        \
   ROW(kGuardStop, "guard_stop", kError, "the guard stops the car on the known road")
 
-/// kWarning: the controller continues to drive, with less throttle. kError: it does not.
+/// Table of GuardReason, with rows as in CHICANE_RUNGS. kWarning: the controller continues to drive, with less
+/// throttle. kError: it does not.
 #define CHICANE_GUARD_REASONS(ROW)                                                                               \
   ROW(kNone, "none", kOk, "the guard found nothing")                                                             \
   ROW(kNoAnswer, "no_answer", kError, "the controller has no answer")                                            \
@@ -46,13 +48,14 @@
 namespace chicane::controller {
 
 #define CHICANE_ENUMERATOR(enumerator, name, severity, sentence) enumerator,
-/// Source of the command of a cycle. Set by safety::Guard alone.
+/// Source of the command of a control cycle; set by safety::Guard.
 enum class Rung : signed char { CHICANE_RUNGS(CHICANE_ENUMERATOR) };
-/// Why the guard did not send the controller's answer, or would not have (docs/safety.md, table of
-/// conditions). The worst one holds: later ones win.
+/// Reason why the guard did not send the controller's answer; in observe mode, would not have sent it
+/// (docs/safety.md, table of conditions). Of several reasons the last one of the table is reported.
 enum class GuardReason : signed char { CHICANE_GUARD_REASONS(CHICANE_ENUMERATOR) };
 #undef CHICANE_ENUMERATOR
 
+/// Words of all enumerators, in their order.
 #define CHICANE_WORD(enumerator, name, severity, sentence) \
   Word<Rung>{Rung::enumerator, name, Severity::severity, sentence},
 inline constexpr std::array kRungWords{CHICANE_RUNGS(CHICANE_WORD)};
@@ -65,6 +68,7 @@ inline constexpr std::array kGuardReasonWords{CHICANE_GUARD_REASONS(CHICANE_WORD
 inline constexpr std::size_t kRungCount = kRungWords.size();
 inline constexpr std::size_t kGuardReasonCount = kGuardReasonWords.size();
 
+/// Words of an enumerator.
 [[nodiscard]] constexpr const Word<Rung>& word_of(Rung rung) noexcept {
   return kRungWords[static_cast<std::size_t>(rung)];
 }

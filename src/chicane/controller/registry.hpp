@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Controllers of the program, by which all else finds them.
 #pragma once
 
 #include "chicane/controller/baselines.hpp"
@@ -8,7 +9,7 @@
 
 namespace chicane::controller {
 
-/// The controllers that ship. A new one is a line here and its include.
+/// Controllers of the program. A new one is a line here and its include.
 using Registry = ControllerList<TrackingMpcEntry,  //
                                 CubicMpcEntry,     //
                                 PidEntry,          //

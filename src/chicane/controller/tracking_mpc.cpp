@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The controller `tracking-mpc`: the control step from measurement to command.
+// The controller `tracking-mpc` (docs/controller.md): the control step from measurement to command.
 #include "chicane/controller/tracking_mpc.hpp"
 
 #include <cmath>
@@ -24,10 +24,11 @@ using Prediction = tracking::StateEstimator::Prediction;
 using StageState = std::array<double, Problem::kNx>;
 using StageInput = std::array<double, Problem::kNu>;
 
-// docs/controller.md explains these where nothing else is named; "chosen" has no other reason.
-constexpr int kMostIterations = TrackingMpcOptions::kMostIterations;  // of a new guess, or of a late step
-constexpr int kRacingIterations = 30;  // original curve of tyres, in a race (docs/limit.md, "The solver")
-constexpr double kTimePerIteration = 0.04;  // [s] lateness of a step for one more iteration
+// docs/controller.md explains constants without another source; "chosen" has no other reason.
+constexpr int kMostIterations = TrackingMpcOptions::kMostIterations;  // with a new guess, or after a pause
+// In a race with the original curve of tyres (docs/limit.md, "The solver").
+constexpr int kRacingIterations = 30;
+constexpr double kTimePerIteration = 0.04;  // [s] time since the last step for one more iteration
 constexpr double kFarFromLine = 15.0;       // [m] a car further away returns to the road; chosen
 constexpr double kLost = 100.0;             // [m] a car further away does not return; docs/safety.md
 constexpr double kSlow = 6.0;               // [m/s] a slower car may turn round on the road; chosen
@@ -64,11 +65,12 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   [[nodiscard]] const StepResult& step(const model::Measurement& now, Deadline deadline) noexcept override {
     sent_time_ = now.time + now.delay;
     const double act_time = now.time + (options_.compensate_delay ? now.delay : 0.0);
-    if (!road_.add(now)) shape_raced();
+    if (!road_.add(now)) shape_raced();  // a learned lap was dropped
     estimator_.correct(now, sent_);
     if (options_.learns()) watch_grip(now);
     reserve_.see(estimator_, now.time, now.delay);
-    watch_sight(now);
+    blind_.note(now.is_finite(), now.time);
+    roadless_.note(now.waypoint_count > 0, now.time);
     const Prediction start = estimator_.predict(act_time, sent_);
     is_returning_ = !place_on_line(now, start) || (is_returning_ && std::fabs(x0_[Problem::kE]) > kJoining);
     if (is_returning_ || estimator_.rolls_back()) return return_to_road(now, start, act_time);
@@ -78,7 +80,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     const solver::SolveReport report = solver_->solve(problem_, x0_, horizon_, iterations_, deadline);
     result_.report.solve_time = deadline.elapsed() - started;
     result_.report.solve = report;
-    // A guess without a single iteration is no answer.
+    // A guess without an iteration is no answer.
     const bool is_guess = report.status == solver::SolveStatus::kBudgetSpent && report.iterations == 0;
     late_.note(!is_guess, now.time);
     if (is_guess && late_.is_long && start.state.vx > kCrawl) return stop_on_road(start);
@@ -143,7 +145,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
  private:
   [[nodiscard]] const road::ReferenceLine& line() const noexcept { return road_.line(); }
 
-  /// Horizon and weights, from the options.
+  /// Sets horizon and weights by the options.
   void shape_problem() noexcept {
     problem_.others = Problem::Step::of(model_, options_.step_length);
     problem_.first = problem_.others;
@@ -160,15 +162,15 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     shape_edges();
   }
 
-  /// Parts of the car that stay on the road: the axles inside the real edges on a planned lap, otherwise the
-  /// centre of mass inside an assumed width.
+  /// Sets the parts of the car that stay on the road: on a planned lap the axles inside the real edges,
+  /// otherwise the centre of mass inside the assumed width.
   void shape_edges() noexcept {
     problem_.nose = road_.is_raced() ? model_.vehicle().front_axle : 0.0;
     problem_.tail = road_.is_raced() ? model_.vehicle().rear_axle : 0.0;
     slips_ = road_.is_raced() ? road_.lap()->slips() : road::RacingRoad::Slips{};
   }
 
-  /// Adapts estimator and model to the beginning or end of a race by a planned lap.
+  /// Adapts estimator and model to the begin or end of a race by a planned lap.
   void shape_raced() noexcept {
     has_horizon_ = false;
     const bool races = road_.is_raced() || options_.learns();
@@ -177,9 +179,8 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     configure_model();
   }
 
-  /// Sets model, road and problem by options, vehicle and grip. The road's speeds count with the estimated
-  /// grip, at most the configured one; with little grip before the tyres have shown any, unless a planned lap
-  /// gives the speeds.
+  /// Sets model, road and problem by options, vehicle and grip. The speeds of the road use the estimated
+  /// grip, at most the configured one; before there is an estimate, and without a planned lap, first_grip().
   void configure_model() noexcept {
     const model::VehicleParams car = model::with_grip(configured_, grip_.share());
     model_.set_vehicle(car);
@@ -190,6 +191,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     shape_problem();
   }
 
+  /// Updates the estimated grip, and the model with it.
   void watch_grip(const model::Measurement& now) noexcept {
     const LearnedGrip::Change change = grip_.see(now, sent_);
     if (change == LearnedGrip::Change::kNothing) return;
@@ -197,7 +199,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     if (change == LearnedGrip::Change::kModel) grip_.begin(estimator_, model_);
   }
 
-  /// Room at both sides of the line at s [m] ahead, where the line has moved sideways by `offset` [m].
+  /// Room to both edges from the line at s [m] ahead; `offset`: of the line from the waypoints [m].
   [[nodiscard]] road::Road::Room room_at(double s, double offset) const noexcept {
     if (!road_.is_raced()) return road_.seen().room(offset);
     const model::VehicleParams& car = model_.vehicle();
@@ -206,14 +208,9 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     return {room.left - taken, room.right - taken};
   }
 
-  void watch_sight(const model::Measurement& now) noexcept {
-    blind_.note(now.is_finite(), now.time);
-    roadless_.note(now.waypoint_count > 0, now.time);
-  }
-
-  /// Highest speed at s [m] ahead that lets the car stop with the braking of the speed plan [m/s]: from now
-  /// on when measurements have been missing for a while (the position is then estimated by the model), and
-  /// where the known road ends when no new waypoints have come.
+  /// Highest speed at s [m] ahead with which the car can stop by the braking of the speed plan [m/s]: from
+  /// now on if measurements are missing, at the end of the known road if waypoints are missing; infinite
+  /// otherwise.
   [[nodiscard]] double stopping_speed(double s) const noexcept {
     const model::VehicleParams& car = model_.vehicle();
     const double v = std::max(x0_[Problem::kVx], 0.0);
@@ -226,7 +223,8 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     return std::sqrt(std::max(squared, 0.0));
   }
 
-  /// The predicted start in coordinates along the line. False when the car or the road is lost.
+  /// Sets the predicted start in coordinates along the line. False if the car is far from the line or turned
+  /// away.
   bool place_on_line(const model::Measurement& now, const Prediction& start) noexcept {
     StepReport& report = result_.report;
     report = {};
@@ -294,7 +292,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   void shift_answer(double elapsed) noexcept {
     old_ = horizon_;
     const double last = old_.horizon;
-    // Position of a time of the old answer in its stages, as a real number.
+    // Stage of the last answer at a time since its start, as a real number.
     const auto stage_at = [&](double time) {
       const double stage = time < old_first_ ? time / old_first_ : 1.0 + (time - old_first_) / old_step_;
       return std::clamp(stage, 0.0, last);
@@ -316,7 +314,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
       const double time = problem_.time(k) + elapsed;
       if (k > 0) {
         horizon_.x[i] = state_at(stage_at(time));
-        // Beyond the end of the old answer, continue at its last speed.
+        // Beyond the end of the last answer: continue at its last speed.
         const double beyond = std::max(0.0, time - old_first_ - (last - 1.0) * old_step_);
         horizon_.x[i][Problem::kS] += beyond * horizon_.x[i][Problem::kVx] - begin;
       }
@@ -344,7 +342,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     ask_road(horizon_.horizon, horizon_.x[static_cast<std::size_t>(horizon_.horizon)]);
   }
 
-  /// Reads the road's demand at stage k for a car near state x.
+  /// Sets the road of stage k for a car near state x.
   void ask_road(int k, const StageState& x) noexcept {
     const double s = x[Problem::kS];
     road::ReferenceLine::Demand demand = line().demand(s_ + s);
@@ -358,7 +356,8 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     const road::Road::Room behind = room_at(s - problem_.tail, demand.offset);
     const model::VehicleParams& car = model_.vehicle();
     const double v = std::max(x[Problem::kVx], 0.0);
-    const bool is_reachable = demand.speed < v + kSpeedAhead;  // more would drown the other weights
+    // A larger error would outweigh all other terms.
+    const bool is_reachable = demand.speed < v + kSpeedAhead;
     const auto i = static_cast<std::size_t>(k);
     Problem::Road& road = problem_.road;
     road.s[i] = s;
@@ -378,6 +377,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     road.acceleration_max[i] = longitudinal_acceleration(car, 1.0, v);
   }
 
+  /// Result with the plan of a usable answer.
   const StepResult& accept(const Prediction& start, double act_time) noexcept {
     has_horizon_ = true;
     result_.answer = Answer::kDrive;
@@ -389,7 +389,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     return result_;
   }
 
-  /// Stops without a solution, when the last plan is old: steers by feedback to the line, brakes fully.
+  /// Result without a plan: steers by feedback to the line, and brakes fully.
   const StepResult& stop_on_road(const Prediction& start) noexcept {
     const model::VehicleParams& car = model_.vehicle();
     const int ahead = std::min(static_cast<int>(kPreview / options_.step_length), options_.horizon_steps - 1);
@@ -400,6 +400,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     return without_plan(Answer::kStopOnRoad);
   }
 
+  /// Result without a plan; the command is set.
   const StepResult& without_plan(Answer answer) noexcept {
     has_horizon_ = false;
     result_.answer = answer;
@@ -407,7 +408,8 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     return result_;
   }
 
-  /// Leads back a car that has spun, or is far from its line: no answer until it is slow, then walking pace.
+  /// Result for a car that has spun, or is far from its line: no answer until it is slow, then walking pace
+  /// to the road.
   const StepResult& return_to_road(const model::Measurement& now, const Prediction& start,
                                    double act_time) noexcept {
     const road::ReferenceLine& line = this->line();
@@ -433,6 +435,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     return without_plan(Answer::kNone);
   }
 
+  /// Writes the answer in W.
   void fill_plan(double act_time) noexcept {
     const road::ReferenceLine& line = this->line();
     Plan& plan = result_.plan;
@@ -454,20 +457,20 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   }
 
   TrackingMpcOptions options_;
-  model::VehicleParams configured_;
-  model::PredictionModel model_;  ///< configured_ with the estimated grip
+  model::VehicleParams configured_;  ///< vehicle of the configuration
+  model::PredictionModel model_;     ///< configured_ with the estimated grip
   SlipReserve reserve_;
   LearnedGrip grip_{model_};
   road::DrivenRoad road_;
   tracking::StateEstimator estimator_;
   tracking::CommandHistory sent_;
-  road::RacingRoad::Slips slips_;  ///< slips that a raced lap was planned with
+  road::RacingRoad::Slips slips_;  ///< slips of the planned lap
   Problem problem_;
   Owned<tracking::TrackingSolver> solver_;
   Horizon horizon_;  ///< in a step: first the last answer, then the guess, then the new answer
   Horizon old_;      ///< copy of the last answer in shift_answer()
   StageState x0_{};  ///< state where the command acts
-  tracking::Disturbance disturbance_;  ///< estimated where the command acts
+  tracking::Disturbance disturbance_;  ///< estimate for the horizon
   StepResult result_;
   double s_ = 0.0;                    ///< arc length on the line where the command acts [m]
   double act_time_ = 0.0;             ///< time at which the last answer begins [s]
@@ -478,10 +481,10 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   unsigned revision_ = 0;             ///< number of the road's line that s_ refers to
   bool has_place_ = false;            ///< s_ is valid
   bool has_horizon_ = false;          ///< horizon_ holds the last answer
-  bool is_returning_ = false;         ///< on the way to the road, and has not joined it yet
-  Absence blind_{kBlindAfter};        ///< no measurements that locate the car
-  Absence roadless_{kBlindAfter};     ///< no waypoints
-  Absence late_{kBlindAfter};         ///< no answers, for want of time
+  bool is_returning_ = false;         ///< on the way back to the road
+  Absence blind_{kBlindAfter};        ///< absence of measurements
+  Absence roadless_{kBlindAfter};     ///< absence of waypoints
+  Absence late_{kBlindAfter};         ///< absence of answers within the time budget
 };
 
 }  // namespace

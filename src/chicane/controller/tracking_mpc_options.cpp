@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Table of options of the controller `tracking-mpc`.
+// Table of the options of the controller `tracking-mpc`: name, unit, range and meaning. Ranges are chosen,
+// unless a constant limits them; meanings are output.
 #include <array>
 
 #include "chicane/controller/tracking_mpc.hpp"
@@ -9,7 +10,7 @@ namespace chicane::controller {
 namespace {
 
 using T = TrackingMpcOptions;
-constexpr double kHighestWeight = 1e6;
+constexpr double kHighestWeight = 1e6;  // limit of the weights; chosen, far above useful ones
 constexpr std::array kOptions{
     option<&T::horizon_steps>("horizon_steps", unit::kNone, 5, tracking::TrackingProblem::kCapacity,
                               "Steps the plan looks ahead."),

@@ -27,11 +27,11 @@ namespace {
 /// Quantity that a column of a CSV file may hold.
 enum Quantity { kTime, kX, kY, kPsi, kSpeed, kYawRate, kSteer, kThrottle, kQuantities };
 
-/// Names of a quantity's column, without units.
+/// Names of the column of a quantity, without units.
 struct Meaning {
   std::string_view name;
-  std::array<std::string_view, 5> others;  ///< other names of the same quantity
-  bool is_needed;
+  std::array<std::string_view, 5> others;  ///< other names of the quantity
+  bool is_needed;                          ///< a log must have the column
 };
 constexpr Meaning kMeanings[kQuantities] = {
     {"time", {"t", "timestamp", "stamp", "", ""}, true},
@@ -44,10 +44,10 @@ constexpr Meaning kMeanings[kQuantities] = {
     {"throttle", {"pedal", "", "", "", ""}, false},
 };
 
-/// Unit at the end of a column's name, and its factor to SI.
+/// Unit at the end of a column's name.
 struct Suffix {
   std::string_view end;
-  double factor;
+  double factor;  ///< SI unit for one of this
 };
 constexpr Suffix kSuffixes[] = {
     {"_degps", kPi / 180.0}, {"_radps", 1.0},     {"_deg", kPi / 180.0}, {"_rad", 1.0},
@@ -55,14 +55,15 @@ constexpr Suffix kSuffixes[] = {
     {"_us", 1e-6},           {"_ns", 1e-9},       {"_s", 1.0},           {"_m", 1.0},
 };
 
+/// Column of a CSV file.
 struct Column {
-  std::size_t at = 0;
-  double factor = 1.0;
+  std::size_t at = 0;   ///< index
+  double factor = 1.0;  ///< factor to SI
 };
 
 /// Name of a column without its unit, and the factor of the unit.
 std::pair<std::string, double> parted(std::string_view name) {
-  const std::string lower = protocol::lower(name);
+  const std::string lower = chicane::lower(name);
   for (const Suffix& suffix : kSuffixes) {
     if (lower.size() > suffix.end.size() && lower.ends_with(suffix.end))
       return {lower.substr(0, lower.size() - suffix.end.size()), suffix.factor};
@@ -70,16 +71,21 @@ std::pair<std::string, double> parted(std::string_view name) {
   return {lower, 1.0};
 }
 
+/// Whether a quantity has this name.
 bool means(const Meaning& meaning, std::string_view name) {
-  return name == meaning.name || (!name.empty() && std::find(meaning.others.begin(), meaning.others.end(),
-                                                             name) != meaning.others.end());
+  const auto& others = meaning.others;
+  return name == meaning.name ||
+         (!name.empty() && std::find(others.begin(), others.end(), name) != others.end());
 }
 
+/// Header of a CSV file.
 struct Header {
+  /// By quantity; none: the file has no column for it.
   std::array<std::optional<Column>, kQuantities> columns;
-  std::size_t count = 0;
+  std::size_t count = 0;  ///< number of all columns
 };
 
+/// Finds the columns of all quantities. `place`: of the header, for messages.
 Result<Header> read_header(const std::vector<std::string_view>& names, const std::string& place,
                            const LogOptions& options) {
   Header header;
@@ -89,9 +95,9 @@ Result<Header> read_header(const std::vector<std::string_view>& names, const std
     const auto configured = options.columns.find(std::string(meaning.name));
     for (std::size_t i = 0; i < names.size() && !header.columns[q]; ++i) {
       const auto [name, factor] = parted(names[i]);
-      const bool is_it =
+      const bool is_found =
           configured == options.columns.end() ? means(meaning, name) : configured->second == names[i];
-      if (is_it) header.columns[q] = Column{i, factor};
+      if (is_found) header.columns[q] = Column{i, factor};
     }
     if (header.columns[q]) continue;
     if (configured != options.columns.end())
@@ -107,6 +113,25 @@ Result<Header> read_header(const std::vector<std::string_view>& names, const std
   return header;
 }
 
+/// Numbers of a row in SI, by quantity; NaN for a quantity without a column. `place`: function that names the
+/// row in messages.
+template <class Place>
+Result<std::array<double, kQuantities>> numbers_of(const std::vector<std::string_view>& values,
+                                                   const Header& header, char separator, const Place& place) {
+  std::array<double, kQuantities> row;
+  row.fill(std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t q = 0; q < kQuantities; ++q) {
+    if (!header.columns[q]) continue;
+    const std::string_view text = values[header.columns[q]->at];
+    const std::optional<double> value = protocol::number(text, separator);
+    if (!value)
+      return fail(ErrorCode::kParse, fmt::format("{}: {}: got {}, expected a finite number", place(),
+                                                 kMeanings[q].name, printable(text)));
+    row[q] = *value * header.columns[q]->factor;
+  }
+  return row;
+}
+
 }  // namespace
 
 Result<LogRows> read_csv_rows(const std::string& text, const std::string& file, const LogOptions& options) {
@@ -115,7 +140,7 @@ Result<LogRows> read_csv_rows(const std::string& text, const std::string& file, 
   char separator = ',';
   protocol::CsvLines lines(text);
   const auto place = [&] { return fmt::format("{}:{}", file, lines.number()); };
-  std::vector<std::string_view> named;
+  std::vector<std::string_view> named;  // columns by position, for a file without header
   if (!options.positions.empty()) {
     named.resize(options.positions.rbegin()->first + 1);
     for (const auto& [at, name] : options.positions) named[at] = name;
@@ -141,17 +166,9 @@ Result<LogRows> read_csv_rows(const std::string& text, const std::string& file, 
     if (values.size() != header->count)
       return fail(ErrorCode::kParse,
                   fmt::format("{}: row: got {} columns, expected {}", place(), values.size(), header->count));
-    std::array<double, kQuantities> row;
-    row.fill(std::numeric_limits<double>::quiet_NaN());
-    for (std::size_t q = 0; q < kQuantities; ++q) {
-      if (!header->columns[q]) continue;
-      const std::optional<double> value = protocol::number(values[header->columns[q]->at], separator);
-      if (!value)
-        return fail(ErrorCode::kParse,
-                    fmt::format("{}: {}: got {}, expected a finite number", place(), kMeanings[q].name,
-                                printable(values[header->columns[q]->at])));
-      row[q] = *value * header->columns[q]->factor;
-    }
+    const auto numbers = numbers_of(values, *header, separator, place);
+    if (!numbers) return fail(numbers.error());
+    const std::array<double, kQuantities>& row = *numbers;
     rows.samples.push_back({row[kTime], row[kX], row[kY], row[kPsi], row[kSpeed], row[kYawRate]});
     if (header->columns[kSteer]) rows.commands.push_back({row[kTime], row[kSteer], row[kThrottle]});
   }
@@ -161,30 +178,32 @@ Result<LogRows> read_csv_rows(const std::string& text, const std::string& file, 
 
 namespace {
 
-// The limits here were chosen.
+// All limits from here on are chosen.
 constexpr double kLongestGap = 0.5;   // [s] a longer gap between samples begins another part
 constexpr double kShortestLog = 2.0;  // [s] a shorter part is left out
-constexpr double kStretch = 0.2;      // [s] least duration of a stretch in which signals are compared
+constexpr double kStretch = 0.2;      // [s] least duration of a stretch over which signals are compared
 
-/// Parts of a log between gaps and jumps, with increasing time. Yaw is unwrapped; of samples with one time
-/// the first is kept.
+/// Order of samples and commands: by time.
+constexpr auto kEarlier = [](const auto& a, const auto& b) { return a.time < b.time; };
+
+/// Parts of a log between gaps and jumps, with increasing times. Unwraps the yaw; of samples with equal times
+/// it keeps the first.
 std::vector<DriveLog> parts_of(LogRows rows, const std::string& file) {
-  const auto earlier = [](const auto& a, const auto& b) { return a.time < b.time; };
   std::vector<DriveLog> parts;
   const DriveLog empty{file, {}, {}, rows.is_centre_of_mass};
   DriveLog part = empty;
-  std::vector<SentCommand> commands = rows.commands;
-  std::stable_sort(commands.begin(), commands.end(), earlier);
+  std::vector<SentCommand>& commands = rows.commands;
+  std::stable_sort(commands.begin(), commands.end(), kEarlier);
   // A yaw rate of 0 throughout is not measured: odometry messages have the field in any case.
   const bool has_yaw_rate = std::any_of(rows.samples.begin(), rows.samples.end(),
                                         [](const Sample& each) { return each.yaw_rate != 0.0; });
   const auto finish = [&] {
     if (!part.samples.empty() && part.samples.back().time - part.samples.front().time >= kShortestLog) {
-      // Commands of the second before may still act.
+      // Commands of the last second before the part may still act.
       const auto from = std::lower_bound(commands.begin(), commands.end(),
-                                         SentCommand{.time = part.samples.front().time - 1.0}, earlier);
+                                         SentCommand{.time = part.samples.front().time - 1.0}, kEarlier);
       const auto to = std::upper_bound(commands.begin(), commands.end(),
-                                       SentCommand{.time = part.samples.back().time}, earlier);
+                                       SentCommand{.time = part.samples.back().time}, kEarlier);
       part.commands.assign(from, to);
       if (!part.commands.empty()) parts.push_back(std::move(part));
     }
@@ -212,16 +231,16 @@ std::vector<DriveLog> parts_of(LogRows rows, const std::string& file) {
   return parts;
 }
 
-/// Sums over all parts that show whether the signals agree with the path. Counted over stretches of kStretch,
-/// because the noise of single places would lengthen the path.
+/// Sums over all parts of a log that show whether the signals agree with the path. They are taken over
+/// stretches of kStretch, because the noise of single positions would lengthen the path.
 struct Agreement {
-  double path = 0.0, speed_path = 0.0;  ///< length of the path by the places, and by the speed [m]
-  double along = 0.0;                   ///< path in the direction of yaw [m]
-  double turned_right = 0.0,
-         turned_left = 0.0;                      ///< turning of the path, against yaw's and with it [rad]
-  double steer_with = 0.0, steer_against = 0.0;  ///< steering with the turning, and against it [rad s]
-  double most_steer = 0.0;                       ///< largest steering [rad]
+  double path = 0.0, speed_path = 0.0;             ///< length of the path by positions, and by speed [m]
+  double along = 0.0;                              ///< path in the direction of the yaw [m]
+  double turned_with = 0.0, turned_against = 0.0;  ///< turning of the path with the yaw, and against it [rad]
+  double steer_with = 0.0, steer_against = 0.0;    ///< steering with the yaw rate, and against it [rad s]
+  double most_steer = 0.0;                         ///< largest steering angle [rad]
 
+  /// Adds one part.
   void look_at(const DriveLog& log) {
     std::size_t command = 0;
     double last_course = std::numeric_limits<double>::quiet_NaN();
@@ -232,7 +251,7 @@ struct Agreement {
       const Sample& b = log.samples[i];
       const double dx = b.x - a.x, dy = b.y - a.y, dt = b.time - a.time;
       const double moved = hypot(dx, dy);
-      if (0.5 * (a.speed + b.speed) * dt < 0.02 || a.speed < 0.3) continue;
+      if (0.5 * (a.speed + b.speed) * dt < 0.02 || a.speed < 0.3) continue;  // the car stands: noise alone
       path += moved;
       speed_path += 0.5 * (a.speed + b.speed) * dt;
       const double middle = 0.5 * (a.psi + b.psi);
@@ -241,7 +260,8 @@ struct Agreement {
       const double yawed = b.psi - a.psi;
       if (std::isfinite(last_course)) {
         const double turned = wrap_angle(course - last_course);
-        (turned * yawed >= 0.0 ? turned_left : turned_right) += std::min(std::fabs(turned), std::fabs(yawed));
+        (turned * yawed >= 0.0 ? turned_with : turned_against) +=
+            std::min(std::fabs(turned), std::fabs(yawed));
       }
       last_course = course;
       while (command + 1 < log.commands.size() && log.commands[command + 1].time <= a.time - 0.1) ++command;
@@ -252,39 +272,36 @@ struct Agreement {
   }
 };
 
+/// Checks units and signs of the signals. The fault names the signal that contradicts the path.
 Result<void> check(const Agreement& seen, const std::string& file) {
+  const auto fault = [&](const std::string& text) { return fail(ErrorCode::kParse, file + ": " + text); };
   if (seen.path < 20.0 && seen.speed_path < 20.0)
-    return fail(ErrorCode::kParse,
-                fmt::format("{}: got {:.1f} m of driving, expected at least 20 m", file, seen.path));
+    return fault(fmt::format("got {:.1f} m of driving, expected at least 20 m", seen.path));
   const double ratio = seen.speed_path / std::max(seen.path, 1e-9);
   if (ratio < 0.8 || ratio > 1.25) {
     const char* guess = std::fabs(ratio - 2.237) < 0.15 ? "; is it in mph?"
                         : std::fabs(ratio - 3.6) < 0.25 ? "; is it in km/h?"
                                                         : "";
-    return fail(
-        ErrorCode::kParse,
-        fmt::format("{}: speed: got {:.2f} times the speed of the path, expected 1{}", file, ratio, guess));
+    return fault(fmt::format("speed: got {:.2f} times the speed of the path, expected 1{}", ratio, guess));
   }
-  if (seen.turned_right > 2.0 * seen.turned_left && seen.turned_right > 0.5)
-    return fail(ErrorCode::kParse,
-                file + ": psi: got a yaw that turns against the path, expected left positive");
+  if (seen.turned_against > 2.0 * seen.turned_with && seen.turned_against > 0.5)
+    return fault("psi: got a yaw that turns against the path, expected left positive");
   if (seen.along < 0.7 * seen.path)
-    return fail(
-        ErrorCode::kParse,
-        fmt::format("{}: psi: got a car that moves {:.0f} % of its way forwards, expected nearly all; yaw is "
+    return fault(
+        fmt::format("psi: got a car that moves {:.0f} % of its way forwards, expected nearly all; yaw is "
                     "counted from +x, left positive [rad]",
-                    file, 100.0 * seen.along / seen.path));
+                    100.0 * seen.along / seen.path));
   if (seen.most_steer > 1.2)
-    return fail(ErrorCode::kParse,
-                fmt::format("{}: steer: got {:.3g} rad, expected a road-wheel angle below 1.2 rad; "
-                            "is it in degrees? (name the column steer_deg)",
-                            file, seen.most_steer));
+    return fault(
+        fmt::format("steer: got {:.3g} rad, expected a road-wheel angle below 1.2 rad; "
+                    "is it in degrees? (name the column steer_deg)",
+                    seen.most_steer));
   if (seen.steer_against > 2.0 * seen.steer_with && seen.steer_against > 0.02)
-    return fail(ErrorCode::kParse,
-                file + ": steer: got steering against the turning, expected left positive");
+    return fault("steer: got steering against the turning, expected left positive");
   return {};
 }
 
+/// Reads a file of any format.
 Result<LogRows> read_rows(const std::string& file, const LogOptions& options) {
   std::string head(8, ' ');
   std::ifstream(file, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
@@ -312,6 +329,7 @@ Result<std::vector<std::string>> files_of(const std::string& path) {
   return files;
 }
 
+/// Parts of a log, if its signals agree with the path.
 Result<std::vector<DriveLog>> checked(Result<LogRows> rows, const std::string& file) {
   if (!rows) return fail(rows.error());
   std::vector<DriveLog> parts = parts_of(std::move(*rows), file);
@@ -353,9 +371,8 @@ Result<DriveLog> read_plain_log(const std::string& file, const LogOptions& optio
   });
   std::erase_if(rows->commands,
                 [](const SentCommand& each) { return !std::isfinite(each.time + each.steer); });
-  const auto earlier = [](const auto& a, const auto& b) { return a.time < b.time; };
-  std::stable_sort(rows->samples.begin(), rows->samples.end(), earlier);
-  std::stable_sort(rows->commands.begin(), rows->commands.end(), earlier);
+  std::stable_sort(rows->samples.begin(), rows->samples.end(), kEarlier);
+  std::stable_sort(rows->commands.begin(), rows->commands.end(), kEarlier);
   if (rows->samples.empty())
     return fail(ErrorCode::kParse, file + ": got no sample of a car, expected places and speeds");
   return DriveLog{file, std::move(rows->samples), std::move(rows->commands), rows->is_centre_of_mass};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Identification: rows of estimated numbers, windows of the logs, the rounds of fitting, and prediction
+// Identification: table of the estimated numbers, windows of the logs, rounds of fitting, and prediction
 // errors.
 #include "chicane/identify/identification.hpp"
 
@@ -20,33 +20,35 @@
 namespace chicane::identify {
 namespace {
 
-constexpr double kWindow = 5.0;            // [s] length of a window; times and speeds are of full-size cars
+// All constants are chosen. Times and speeds are those of a car in full size.
+constexpr double kWindow = 5.0;            // [s] length of a window
 constexpr double kSeen = 0.5;              // [s] samples from which a prediction starts
-constexpr double kLeastDriving = 10.0;     // [s] of windows, for a fit
+constexpr double kLongestAhead = 3.3;      // [s] length of a prediction: errors are given up to 3 s ahead
+constexpr double kLeastDriving = 10.0;     // [s] least length of all windows of a fit
 constexpr double kLeastSpeed = 3.0;        // [m/s] below it tyres creep and brakes hold
-constexpr std::size_t kMostWindows = 400;  // limit of windows in the fit
-constexpr std::size_t kFewWindows = 12;    // the same of a rough search
-constexpr int kRoughSteps = 12;            // steps of a rough search
+constexpr std::size_t kMostWindows = 400;  // limit of windows in a fit
+constexpr std::size_t kFewWindows = 12;    // limit of windows in a rough search
+constexpr int kRoughSteps = 12;            // limit of steps of a rough search
 constexpr double kRoughAccuracy = 3e-2;    // accuracy of all rounds but the last, in deviations of the prior
-constexpr double kAccuracy = 1e-3;         // the same of the last round: intervals are about a tenth of it
-constexpr double kMoreGrip = 0.4;          // logarithm of the friction's first guess over its prior
+constexpr double kAccuracy = 1e-3;         // accuracy of the last round, in deviations of the prior
+constexpr double kMoreGrip = 0.4;          // logarithm of the first guess of the friction over its prior
 
-/// Estimated number: where it is stored in a car in full size, and its prior.
+/// Estimated number: its prior, and its place in the car of the fit, which is in full size.
 struct Row {
   std::string key;
   Unit unit;
-  bool is_log;                            ///< positive: its logarithm is estimated
-  double mean;                            ///< [SI]
-  double deviation;                       ///< [SI], or of the logarithm
-  std::function<void(Car&, double)> put;  ///< a value in SI
-  double per_full_size = 1.0;             ///< value for the actual car [SI] over the value in full size
-  /// Root mean square error of the fit that samples do not reduce [as deviation]: of perfect logs, as the
-  /// model lacks effects of the shipped cars' plants, and of logs whose commands answer the sensors' noise
-  /// (studies/tables/identification.py --noise 0 and 1; docs/identification.md, "The method").
+  bool is_log;                            ///< the logarithm is estimated: the number is positive
+  double mean;                            ///< mean of the prior, in SI units
+  double deviation;                       ///< deviation of the prior, in SI units or of the logarithm
+  std::function<void(Car&, double)> put;  ///< stores a value in SI units in a car
+  double per_full_size = 1.0;             ///< value for the actual car over the value in full size
+  /// Error of the fit that more samples do not reduce, root mean square in the unit of `deviation`; measured
+  /// by studies/tables/identification.py --noise 0 and 1: the model lacks effects of the shipped cars'
+  /// plants, and the commands answer the noise of the sensors (docs/identification.md, "The method").
   double model_error = 0.0;
 };
 
-/// Scale of numbers with this unit: actual car over full size (model/vehicle.hpp).
+/// Value for the actual car over the value in full size, of numbers with this unit (model/vehicle.hpp).
 double per_full_size(std::string_view unit, const model::Similarity& to) {
   const double length = to.length(), time = to.time();
   if (unit == "ms") return 1.0 / time;
@@ -58,19 +60,7 @@ double per_full_size(std::string_view unit, const model::Similarity& to) {
   return 1.0;  // ratios, angles, accelerations
 }
 
-/// Log of the same motion in full size.
-DriveLog full_size(DriveLog log, const model::Similarity& to) {
-  for (Sample& sample : log.samples) {
-    sample.time *= to.time();
-    sample.x *= to.length();
-    sample.y *= to.length();
-    sample.speed *= to.speed();
-    sample.yaw_rate /= to.time();
-  }
-  for (SentCommand& commands : log.commands) commands.time *= to.time();
-  return log;
-}
-
+/// Scales the axles of a car to the wheelbase `to` [m].
 void scale_wheelbase(Car& car, double to) {
   const double by = to / car.vehicle.wheelbase();
   car.vehicle.front_axle *= by;
@@ -78,15 +68,18 @@ void scale_wheelbase(Car& car, double to) {
   car.vehicle.kinematic_length *= by;
 }
 
+/// Stores a value in a member of a car, or in a member of that member.
 template <auto... Members>
 void put(Car& car, double value) {
   (car.*....*Members) = value;
 }
 
-/// Rows of the numbers that the car has, in the order of its report. `start`: in full size.
+/// Numbers to estimate, in the order of the report. `start`: car in full size. The deviations of the priors
+/// are chosen: the range of cars of one kind.
 std::vector<Row> rows_for(const model::VehicleParams& start, const Wheels& wheels, bool has_pedal,
                           bool is_centre_of_mass) {
   std::vector<Row> rows{{"latency_ms", unit::kMillisecond, false, 0.1, 0.1, put<&Car::delay>, 1.0, 0.012}};
+  // Adds a parameter of the vehicle, if it is above zero; `least`: least mean of the prior.
   const auto add = [&](std::string_view name, double deviation, double least = 0.0, double error = 0.0) {
     const Option& option = *std::ranges::find(model::vehicle_options(), name, &Option::name);
     const double mean = std::max(std::get<double>(option.read(&start)), least);
@@ -122,8 +115,10 @@ std::vector<Row> rows_for(const model::VehicleParams& start, const Wheels& wheel
   return rows;
 }
 
+/// Value in SI units of the estimated `theta`.
 double value_of(const Row& row, double theta) { return row.is_log ? exp(theta) : theta; }
 
+/// Prior of all numbers; its car is `start` with the numbers.
 Prior prior_of(const std::vector<Row>& rows, const model::VehicleParams& start, const Wheels& wheels) {
   Prior prior;
   for (const Row& row : rows) {
@@ -139,16 +134,17 @@ Prior prior_of(const std::vector<Row>& rows, const model::VehicleParams& start, 
   return prior;
 }
 
-/// Adds stretches of `length` [s] without standing; the start is taken from the samples.
+/// Adds windows of up to `length` [s] in which the car does not stand, between two times of a log. Their
+/// starts are taken from the samples.
 void add_windows(const std::vector<DriveLog>& logs, std::size_t log, double from, double to, double length,
-                 double least_speed, std::vector<Window>& windows) {
+                 std::vector<Window>& windows) {
   const std::vector<Sample>& samples = logs[log].samples;
   std::size_t first = 0;
   while (first < samples.size() && samples[first].time < from) ++first;
   while (first < samples.size()) {
     std::size_t last = first;
     while (last < samples.size() && samples[last].time < std::min(samples[first].time + length, to) &&
-           samples[last].speed > least_speed)
+           samples[last].speed > kLeastSpeed)
       ++last;
     if (last > first + 8 && samples[last - 1].time - samples[first].time > 0.6 * length) {
       const Sample& at = samples[first];
@@ -161,15 +157,15 @@ void add_windows(const std::vector<DriveLog>& logs, std::size_t log, double from
   }
 }
 
-/// Measurement and prediction side by side, brought from full size to the actual car.
+/// Sample and prediction of it, scaled from full size to the actual car.
 Compared compared(const Sample& seen, const Expected& e, const model::Similarity& from) {
   const double l = from.length(), v = from.speed(), t = seen.time / from.time();
   return {t, seen.x / l, seen.y / l, seen.psi, seen.speed / v, e[0] / l, e[1] / l, e[2], e[3] / v};
 }
 
-/// Evaluates the windows with the estimated car: residuals of the samples, and used share of the tyres.
-void look_back(const std::vector<DriveLog>& logs, const std::vector<Window>& windows, const Car& car,
-               const model::Similarity& similarity, Identification& found) {
+/// Evaluates the fitted windows with the estimated car: predictions of the samples, and use of the tyres.
+void evaluate_fit(const std::vector<DriveLog>& logs, const std::vector<Window>& windows, const Car& car,
+                  const model::Similarity& similarity, Identification& found) {
   const model::PredictionModel model(car.vehicle);
   std::array<std::vector<double>, 2> uses;
   std::vector<Expected> expected;
@@ -184,6 +180,7 @@ void look_back(const std::vector<DriveLog>& logs, const std::vector<Window>& win
       found.fitted.push_back(compared(logs[window.log].samples[window.first + i], e, similarity));
     }
   }
+  // 99th percentile of the use of an axle; fills its histogram.
   const auto most_of = [](std::vector<double>& axle, std::array<int, 30>& bins) {
     if (axle.empty()) return 0.0;
     for (const double use : axle)
@@ -196,6 +193,7 @@ void look_back(const std::vector<DriveLog>& logs, const std::vector<Window>& win
   found.use_rear = most_of(uses[1], found.slip.rear);
 }
 
+/// Predicts the held-out windows from their first samples.
 std::vector<PredictedStretch> predict(const std::vector<DriveLog>& logs, std::vector<Window> windows,
                                       const Car& car, const Noise& noise,
                                       const model::Similarity& similarity) {
@@ -216,7 +214,7 @@ std::vector<PredictedStretch> predict(const std::vector<DriveLog>& logs, std::ve
   return stretches;
 }
 
-/// Pose of a car that keeps the speed and mean yaw rate of the known samples.
+/// Pose at the time of `at` of a car that keeps the speed and the mean yaw rate of the known samples.
 Compared kept_motion(const PredictedStretch& stretch, const Compared& at) {
   const Compared& first = stretch.samples.front();
   const Compared* last = &first;
@@ -232,7 +230,7 @@ Compared kept_motion(const PredictedStretch& stretch, const Compared& at) {
           .model_psi = last->psi + rate * ahead};
 }
 
-/// Errors of predictions one, two and three seconds ahead, in full size.
+/// Root mean square errors of predictions one, two and three seconds ahead; `to_full_size`: of times.
 std::vector<PredictionError> prediction_errors(const std::vector<PredictedStretch>& stretches,
                                                double to_full_size) {
   std::vector<PredictionError> found;
@@ -268,31 +266,31 @@ void thin(std::vector<Window>& windows, std::size_t most) {
   }
 }
 
-/// Stretches of logs, the numbers to estimate from them, and the noise; all in full size.
+/// Task of a fit, in full size: stretches of logs, numbers to estimate from them, and noise.
 struct Task {
   const std::vector<DriveLog>& logs;
   const IdentifyOptions& options;
-  std::vector<Window> windows{}, held_out{};  ///< stretches to fit, and to predict
-  std::vector<Row> rows{};
+  std::vector<Window> windows{}, held_out{};  ///< windows to fit, and windows to predict
+  std::vector<Row> rows{};                    ///< numbers to estimate
   Prior prior{};
-  Noise noise{0.055, 0.055, 0.005, 0.1, 0.02};  ///< first guess; each round of the fit renews it
+  Noise noise{0.055, 0.055, 0.005, 0.1, 0.02};  ///< first guess; chosen. Each round of the fit replaces it
 };
 
-/// Fits the windows in rounds. Each takes the residuals of the one before as noise; the first is rough.
+/// Fits the windows in rounds. Each round has the residuals of the round before as noise.
 WindowFit fit_in_rounds(Task& task) {
   const bool is_rough = task.options.is_rough;
-  const Noise least{1e-3, 1e-3, 2e-4, 5e-3, 1e-3};
-  // The first round fixes the limit of the steering's rate at a high value. One that is assumed too low
-  // explains every bend wrongly, one that is too high changes nothing.
+  const Noise least{1e-3, 1e-3, 2e-4, 5e-3, 1e-3};  // noise of perfect logs; chosen
+  // The first round fixes the rate limit of the steering at a high value: a limit that is too low makes every
+  // bend wrong, a limit that is too high changes nothing.
   Prior first = task.prior;
   WindowFit fit;
   fit.theta = first.mean;
   for (std::size_t i = 0; i < task.rows.size(); ++i) {
-    // With too little grip the car spins in the model, and no step helps; with too much it only slips less.
+    // Too little grip makes the model spin, and no step helps; too much only makes it slip less.
     if (task.rows[i].key == "friction") fit.theta[i] += kMoreGrip;
     if (task.rows[i].key != "steer_rate_limit_degps") continue;
-    fit.theta[i] = first.mean[i] += 1.5;  // its logarithm
-    first.deviation[i] = 0.01;
+    fit.theta[i] = first.mean[i] += 1.5;  // logarithm: 4.5 times the rate of the prior; chosen
+    first.deviation[i] = 0.01;            // practically fixed
   }
   const int rounds = is_rough ? 1 : 3;
   bool goes_on = true;
@@ -302,12 +300,13 @@ WindowFit fit_in_rounds(Task& task) {
     const auto search = [&](std::vector<Window>& starts, const std::vector<double>& from) {
       return fit_windows(task.logs, starts, round == 0 ? first : task.prior, from, task.noise,
                          round + 1 < rounds ? kRoughAccuracy : kAccuracy, [&] {
-                           goes_on = task.options.progress((round + std::min(1.0, 0.07 * step)) / rounds);
+                           goes_on = task.options.progress((round + std::min(1.0, 0.07 * step)) /
+                                                           rounds);  // some 14 steps a round
                            return goes_on && (step++ < kRoughSteps || !is_rough);
                          });
     };
-    // In the first round the lag stands for a limited rate of the steering. So the second one also starts
-    // from the prior's steering, and keeps the better fit.
+    // In the first round the steering lag absorbs the effect of the rate limit. So the second round also
+    // starts from the prior of the steering, and keeps the better fit.
     std::vector<Window> others = task.windows;
     std::vector<double> other = fit.theta;
     for (std::size_t i = 0; i < task.rows.size(); ++i)
@@ -318,20 +317,20 @@ WindowFit fit_in_rounds(Task& task) {
       fit = std::move(again);
       task.windows = std::move(others);
     }
-    // Use one deviation for both directions of the place.
+    // Both directions of the position have one deviation.
     fit.residual[0] = fit.residual[1] = std::max(fit.residual[0], fit.residual[1]);
     for (std::size_t kind = 0; kind < least.size(); ++kind)
       task.noise[kind] = std::max(fit.residual[kind], least[kind]);
   }
   for (std::size_t i = 0; i < first.mean.size() && round < 2 && !goes_on; ++i) {
-    if (first.deviation[i] == task.prior.deviation[i]) continue;  // fixed in the first round: not estimated
+    if (first.deviation[i] == task.prior.deviation[i]) continue;  // others were fixed: not estimated
     fit.theta[i] = task.prior.mean[i];
     fit.deviation[i] = task.prior.deviation[i];
   }
   return fit;
 }
 
-/// Adds the estimates of the actual car, with intervals of two deviations.
+/// Adds the estimates for the actual car, with intervals of two standard deviations.
 void add_estimates(const Task& task, const WindowFit& fit, Identification& found) {
   for (std::size_t i = 0; i < task.rows.size(); ++i) {
     const Row& row = task.rows[i];
@@ -346,7 +345,7 @@ void add_estimates(const Task& task, const WindowFit& fit, Identification& found
     Estimate& each = found.estimates.back();
     if (each.key == "latency_ms")
       for (double* number : {&each.value, &each.low, &each.high}) *number = std::max(0.0, *number);
-    // The beginning of the curve says little about its peak.
+    // The first part of the curve of the force says little about its peak.
     if (each.key == "friction" && !found.knows_tires()) each.is_excited = false;
   }
 }
@@ -366,8 +365,8 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs,
   for (std::size_t i = 0; i < logs.size(); ++i) {
     const double from = logs[i].samples.front().time, to = logs[i].samples.back().time;
     const double split = to - options.hold_out * (to - from);
-    add_windows(logs, i, from, split, kWindow, kLeastSpeed, task.windows);
-    add_windows(logs, i, split, to, kSeen + 3.3, kLeastSpeed, task.held_out);  // errors up to 3 s ahead
+    add_windows(logs, i, from, split, kWindow, task.windows);
+    add_windows(logs, i, split, to, kSeen + kLongestAhead, task.held_out);
     found.driven += (to - from) / similarity.time();
     found.has_pedal = found.has_pedal && logs[i].has_throttle();
     is_centre_of_mass = is_centre_of_mass && logs[i].is_centre_of_mass;
@@ -394,7 +393,7 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs,
   found.correlation = fit.correlation;
   found.residual = {fit.residual[0] / similarity.length(), fit.residual[2],
                     fit.residual[3] / similarity.speed()};
-  look_back(logs, task.windows, car, similarity, found);
+  evaluate_fit(logs, task.windows, car, similarity, found);
   add_estimates(task, fit, found);
   found.correlations = std::move(fit.correlations);
   found.stretches = predict(logs, std::move(task.held_out), car, task.noise, similarity);
@@ -405,11 +404,14 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs,
 }  // namespace
 
 double turning_wheelbase(const std::vector<DriveLog>& logs) {
-  constexpr double kLate = 0.15;        // [s] a usual delay and lag
-  constexpr double kSpan = 0.2;         // [s] over which the yaw rate is taken
-  constexpr double kLeastSteer = 0.03;  // [rad]
-  constexpr std::size_t kFewest = 20;   // samples in bends needed for a wheelbase
-  // Least squares of steer = wheelbase · curvature + understeer · sideways acceleration.
+  // All constants are chosen.
+  constexpr double kLate = 0.15;        // [s] usual delay and lag of the steering
+  constexpr double kSpan = 0.2;         // [s] time over which the yaw rate is taken
+  constexpr double kLeastSteer = 0.03;  // [rad] least steering angle of a bend
+  constexpr double kSlowest = 0.3;      // [m/s] least speed
+  constexpr std::size_t kFewest = 20;   // least number of samples in bends
+  // Least squares of steer = wheelbase · curvature + understeer · sideways acceleration: sums of products of
+  // c, a, s.
   double cc = 0.0, ca = 0.0, aa = 0.0, cs = 0.0, as = 0.0;
   std::size_t count = 0;
   for (const DriveLog& log : logs) {
@@ -423,7 +425,7 @@ double turning_wheelbase(const std::vector<DriveLog>& logs) {
       if (next.time - at.time < 0.5 * kSpan || std::fabs(steer) < kLeastSteer) continue;
       const double yaw_rate = (next.psi - at.psi) / (next.time - at.time);
       const double speed = 0.5 * (at.speed + next.speed);
-      if (!(yaw_rate * steer > 0.0 && speed > 0.3)) continue;
+      if (!(yaw_rate * steer > 0.0 && speed > kSlowest)) continue;
       const double curvature = yaw_rate / speed, sideways = speed * yaw_rate;
       cc += curvature * curvature;
       ca += curvature * sideways;
@@ -463,17 +465,27 @@ double Identification::least_friction() const noexcept {
 double Identification::shown_friction() const noexcept {
   const double use = std::min(1.0, std::min(use_front, use_rear));
   const double shape = vehicle.tire_shape;
-  // The curve of force over slip; its chord where the shape is the original simulator's.
+  // Force over slip by the curve of the tyre; by its chord for the curve of the original simulator.
   const double force = shape > 1.0 ? sin(shape * atan(use * tan(kPi / (2.0 * shape)))) : use;
   return force * vehicle.friction;
 }
 
 Result<Identification> identify(const std::vector<DriveLog>& logs, const model::VehicleParams& start,
                                 const IdentifyOptions& options) {
-  // A model car is fitted in full size, as controllers see it: the model's lower bounds are for such a car.
+  // A model car is fitted in full size, as controllers treat it, because the bounds of the model are for full
+  // size.
   const model::Similarity similarity(start);
-  std::vector<DriveLog> scaled;
-  for (const DriveLog& each : logs) scaled.push_back(full_size(each, similarity));
+  std::vector<DriveLog> scaled = logs;
+  for (DriveLog& log : scaled) {
+    for (Sample& sample : log.samples) {
+      sample.time *= similarity.time();
+      sample.x *= similarity.length();
+      sample.y *= similarity.length();
+      sample.speed *= similarity.speed();
+      sample.yaw_rate /= similarity.time();
+    }
+    for (SentCommand& command : log.commands) command.time *= similarity.time();
+  }
   return identify_full_size(scaled, start, options);
 }
 

@@ -14,6 +14,7 @@
 namespace chicane::lap_time {
 namespace {
 
+/// Times of a lap and its thirds from the place `start_s` [m] on; without corners.
 LapTimes times_of(const road::RacingLine& line, double start_s) {
   LapTimes times;
   times.lap = line.lap_time();
@@ -27,6 +28,7 @@ LapTimes times_of(const road::RacingLine& line, double start_s) {
   return times;
 }
 
+/// Search of a limit: the optimum, then its witness.
 class Finder {
  public:
   Finder(const road::Track& track, std::string_view name, const sim::PlantDeviation& deviation,
@@ -69,7 +71,7 @@ class Finder {
 
  private:
   [[nodiscard]] SearchEffort effort() const { return {search_.iterations(), search_.work()}; }
-  /// Plans with more and more in reserve, until one can be driven.
+  /// Drives plans with more and more reserve, until one stays on the road.
   Result<void> drive(NodePlan from, PlantLimit& limit) {
     stage_ = "witness";
     for (const Reserve& reserve : model_.reserves()) {
@@ -174,10 +176,11 @@ Limit bound_from_start(const road::Track& track, const PlantLimit& limit) {
   Limit from_start{.times = limit.bound, .line = {}};
   if (limit.line.is_empty()) return from_start;
   from_start.line = road::line_points(track, beginning_at(limit.line, track.centre().wrap(track.start_s())));
-  for (std::size_t i = 1; i < from_start.line.size();
-       ++i)  // continuous across the beginning of the centre line
-    from_start.line[i].heading = from_start.line[i - 1].heading +
-                                 angle_difference(from_start.line[i].heading, from_start.line[i - 1].heading);
+  // Headings are continuous, also across the beginning of the centre line.
+  for (std::size_t i = 1; i < from_start.line.size(); ++i) {
+    const double before = from_start.line[i - 1].heading;
+    from_start.line[i].heading = before + angle_difference(from_start.line[i].heading, before);
+  }
   from_start.times.corners = corner_times(track, limit.line);
   return from_start;
 }

@@ -16,6 +16,9 @@
 #include "chicane/sim/double_track.hpp"
 #include "chicane/sim/plant.hpp"
 
+/// The fastest lap that a simulated car can drive on a closed road: search, result, and comparison of driven
+/// laps with it.
+
 namespace chicane::lap_time {
 
 /// Times of a lap and of its thirds from the start line on [s].
@@ -40,11 +43,11 @@ struct LapWithout {
 /// Progress of a search for a lap. Work is counted, not measured: the same search takes the same work on
 /// every machine, so that a budget ends it at the same iterate.
 struct PlanProgress {
-  double work = 0.0;      ///< done, in seconds of a core that iterates over kNodesPerSecond nodes a second
+  double work = 0.0;      ///< work so far: iterations · nodes / kNodesPerSecond [s]
   double expected = 0.0;  ///< work of a search without retries [s]; limited by the budget
   double lap_time = 0.0;  ///< lap time of the iterate [s]
 
-  static constexpr double kNodesPerSecond = 12000.0;
+  static constexpr double kNodesPerSecond = 12000.0;  ///< nodes of an iteration that a core does in a second
 };
 
 /// Laps driven in the plant, with its whole state and without latency: the plan's commands plus feedback
@@ -66,19 +69,18 @@ struct SearchEffort {
   double work = 0.0;  ///< [s]
 };
 
-/// The fastest lap of a simulated car on a closed road (docs/limit.md): the optimum of the plant's own
-/// equations, which no controller should beat, and the best lap that was driven. The truth lies between.
+/// Limit of a simulated car on a closed road (docs/limit.md): the optimum of the plant's equations, which no
+/// controller should beat, and the best lap that was driven. The fastest possible lap lies between the two.
 struct PlantLimit {
-  LapTimes bound;         ///< times of the optimum [s]
-  road::RacingLine line;  ///< line of the optimum, without reserve; no bound if is_best_so_far
-  std::optional<Witness>
-      witness{};              ///< none: no plan could be driven without an event, or none was asked for
-  bool is_cut_short = false;  ///< the budget ended the search for the witness
-  int nodes = 0;              ///< nodes of the optimum
-  SearchEffort effort{};      ///< effort of all searches
-  SearchEffort of_optimum{};  ///< effort of the search without reserve
-  double stationarity = 0.0;  ///< at the optimum: largest slope of the Lagrangian, scaled
-  double violation = 0.0;     ///< largest violated equation or inequality, scaled
+  LapTimes bound;                    ///< times of the optimum [s]
+  road::RacingLine line;             ///< line of the optimum, without reserve; no bound if is_best_so_far
+  std::optional<Witness> witness{};  ///< empty: no plan could be driven without an event, or none was wanted
+  bool is_cut_short = false;         ///< the budget ended the search for the witness
+  int nodes = 0;                     ///< nodes of the optimum
+  SearchEffort effort{};             ///< effort of all searches
+  SearchEffort of_optimum{};         ///< effort of the search without reserve
+  double stationarity = 0.0;         ///< at the optimum: largest slope of the Lagrangian, scaled
+  double violation = 0.0;            ///< largest violated equation or inequality, scaled
 
   /// Whether the bound is one and no budget ended a search: the answer is the same without one.
   [[nodiscard]] bool is_whole() const noexcept { return !line.is_best_so_far && !is_cut_short; }
@@ -86,10 +88,11 @@ struct PlantLimit {
   [[nodiscard]] double bracket() const noexcept;
 };
 
+/// Options of find_plant_limit().
 struct PlantLimitOptions {
-  double time_step = 0.08;  ///< time between nodes, about [s]; [0.01, 0.2]
-  bool wants_witness = true;
-  int laps = 4;  ///< laps of the witness, after a flying start
+  double time_step = 0.08;    ///< time between nodes, about [s]; [0.01, 0.2]
+  bool wants_witness = true;  ///< also drives plans in the plant
+  int laps = 4;               ///< laps of the witness, after a flying start
   /// Limit of the work [s], > 0 (PlanProgress). The best lap so far is the answer then.
   double budget = std::numeric_limits<double>::infinity();
   /// Called with the progress, and the lap time, after each iteration; false ends the search. May be empty.
@@ -100,34 +103,35 @@ struct PlantLimitOptions {
 /// Finds the limit of a plant on a track. Takes 1 to 60 s and some 10 MB. Deterministic. Keeps nothing
 /// between calls.
 ///
-/// `params`: of the plant `double-track`. kNotFound for a plant that has no model here; kInvalidArgument for
-/// an open road, a road too narrow for the car or with a bend too tight for its full lock (names the place
-/// and the radius), options out of range, and for a search that ended without an optimum.
+/// `params`: parameters of the plant `double-track`. Fails with kNotFound for a plant without a limit model;
+/// with kInvalidArgument for an open road, a road too narrow for the car or with a bend too tight for its
+/// full lock (with the place and the radius), options out of range, and a search that ended without an
+/// optimum.
 [[nodiscard]] Result<PlantLimit> find_plant_limit(const road::Track& track, std::string_view plant,
                                                   const sim::PlantDeviation& deviation = {},
                                                   const PlantLimitOptions& options = {},
                                                   const sim::DoubleTrackParams& params = {});
 
-/// Bound of a plant (PlantLimit), as driven laps are compared with it.
+/// Bound of a plant (PlantLimit) for comparison with driven laps.
 struct Limit {
   LapTimes times;
   std::vector<road::LinePoint> line;  ///< by rising time from the start line; the last repeats the first
 };
 
-/// Times [s] of a closed lap of `track` for each of road::corners_of(), with half of the straights beside it:
-/// road::corner_sectors(). Between the line's points the time is linear: within 1 ms. Empty for an empty
-/// line. Allocates.
+/// Times [s] of the corners of `track` in a closed lap, each with half of the straights beside it
+/// (road::corner_sectors()). Time is interpolated linearly between the line's points: within 1 ms. Empty for
+/// an empty line. Allocates.
 [[nodiscard]] std::vector<double> corner_times(const road::Track& track, const road::RacingLine& line);
 
 /// Times and line of the bound, from the start line of `track` on, with the times of its corners.
 [[nodiscard]] Limit bound_from_start(const road::Track& track, const PlantLimit& limit);
 
-/// Limit of a run, or one sentence on why there is none (yet).
+/// Limit of a run, or one sentence on why it is not known.
 struct LimitAnswer {
-  std::shared_ptr<const Limit> found{};  ///< null: not known
-  std::string why_not{};                 ///< empty if it is known, or without a reason
-  int first_lap = 1;                     ///< first lap that it holds for; grip or mass differed before
-  std::vector<LapWithout> without{};     ///< laps that explain the gap to it; empty: not driven
+  std::shared_ptr<const Limit> found{};  ///< the limit; null: not known
+  std::string why_not{};                 ///< reason of an unknown limit; may be empty
+  int first_lap = 1;                     ///< first lap with the limit's grip and mass
+  std::vector<LapWithout> without{};     ///< laps that explain the gap to the limit; empty: not driven
 };
 
 }  // namespace chicane::lap_time

@@ -13,10 +13,11 @@ namespace chicane::lap_time {
 namespace {
 
 constexpr double kQuickSteering =
-    1.2;                             // [rad/s] steering as quick needs no bound on braking that turns the car
-constexpr double kTolerance = 1e-4;  // tolerance of the optimum: about 1 ms of a lap
+    1.2;                             // [rad/s] steering rate that needs no bound on braking in bends; chosen
+constexpr double kTolerance = 1e-4;  // tolerance of the optimum; chosen: about 1 ms of a lap
 constexpr int kSteerRate = kPedal + 1, kPedalRate = kPedal + 2;  // inputs follow the states of CommonState
 
+/// Whether all options are in the ranges of RacingPlanOptions.
 [[nodiscard]] bool are_in_range(const RacingPlanOptions& options) {
   const auto is_share = [](double share, double most) { return share > 0.0 && share <= most; };
   return options.margin >= 0.0 && is_share(options.grip_share, 1.0) && is_share(options.brake_share, 1.0) &&
@@ -24,8 +25,7 @@ constexpr int kSteerRate = kPedal + 1, kPedalRate = kPedal + 2;  // inputs follo
          options.time_step <= 0.2 && options.budget > 0.0 && options.delay > 0.0;
 }
 
-/// The model of tracking controllers (model::PredictionModel) as a car whose lap is searched.
-
+/// The model of tracking controllers (model::PredictionModel) as a car whose fastest lap is searched.
 class VehiclePlan final : public PlanModelOf<PlanModel, VehicleModel> {
  public:
   explicit VehiclePlan(const model::VehicleParams& vehicle, const RacingPlanOptions& options = {})
@@ -37,11 +37,8 @@ class VehiclePlan final : public PlanModelOf<PlanModel, VehicleModel> {
     model_.is_steered_slowly = vehicle.friction_coupling > 0.0 && vehicle.steer_rate_limit < kQuickSteering;
     set_reserve({.slip_share = 1.0});
   }
-  [[nodiscard]] CarSize size() const override {
-    return {vehicle_.front_axle, vehicle_.rear_axle, 0.5 * (vehicle_.track_width + vehicle_.tire_width),
-            vehicle_.steer_limit};
-  }
-  /// A gentle lap as the first guess: shares of grip, drive and brakes from which the search converges.
+  [[nodiscard]] CarSize size() const override { return model_.size(); }
+  /// Shares of grip, drive and brakes were chosen: the search converges from them.
   [[nodiscard]] GuessCar guess_car() const override {
     const model::VehicleParams& car = vehicle_;
     const double stay = 1.0 - car.steer_helper;
@@ -97,8 +94,8 @@ Result<void> can_be_driven(const road::Track& track, const model::VehicleParams&
                            double scale) {
   if (!track.centre().is_closed()) return {};
   const CarSize size = VehiclePlan(vehicle).size();
-  // A tenth of the steering lock stays for control (1.1). A middle of the road with a fifth more room than
-  // that (1.32) needs no search for a line.
+  // A tenth of the steering lock stays for control (1.1). A road whose middle has a fifth more room than that
+  // (1.32) needs no search for a line.
   const Fit fit{.reserve = 1.1, .surely = 1.32, .beside = beside, .scale = scale};
   Result<void> fits = fits_road(track, size, fit);
   constexpr std::string_view kPrefix = "limit: ";
@@ -123,8 +120,7 @@ Result<road::RacingLine> plan_racing_line(const road::Track& track, const model:
                      .grip_share = options.grip_share,
                      .slip_share = options.slip_share,
                      .brake_share = options.brake_share});
-  // Other nodes: where tyres saturate the search may fail on some, and 0.85 or 1.2 times the step gives
-  // others.
+  // The search may fail on some nodes, where tyres saturate; 0.85 and 1.2 times the step give other nodes.
   Result<NodePlan> plan = fail(ErrorCode::kInvalidArgument, "");
   double work = 0.0;
   for (const double step : {1.0, 0.85, 1.2}) {

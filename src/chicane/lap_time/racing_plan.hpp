@@ -11,17 +11,19 @@
 #include "chicane/road/racing_road.hpp"
 #include "chicane/road/track.hpp"
 
+/// Plans the fastest lap that a controller can follow.
+
 namespace chicane::lap_time {
 
-/// Reserves of a plan to race by.
+/// Reserves of a racing plan, and limits of its search.
 struct RacingPlanOptions {
   double margin = 0.0;       ///< distance of each contact patch to its edge, kerb included [m], >= 0
-  double grip_share = 1.0;   ///< share of the friction, (0, 1]
+  double grip_share = 1.0;   ///< used share of the friction, (0, 1]
   double slip_share = 1.0;   ///< largest axle slip over the slip of peak force, (0, 2]
-  double brake_share = 1.0;  ///< share of the largest useful deceleration, (0, 1]
-  bool slides = false;       ///< the rear tyres beyond their peak where model::SlidingBound permits it ...
-  double delay = model::SlidingBound::kAssumedDelay;  ///< ... with this delay of the controller [s], > 0
-  double speed_limit = 100.0;                         ///< [m/s], > 3
+  double brake_share = 1.0;  ///< used share of the largest useful deceleration, (0, 1]
+  bool slides = false;       ///< permits slip beyond the peak, up to model::SlidingBound
+  double delay = model::SlidingBound::kAssumedDelay;  ///< delay of the controller, for that bound [s], > 0
+  double speed_limit = 100.0;                         ///< largest speed [m/s], > 3
   double time_step = 0.08;                            ///< time between nodes, about [s]; [0.01, 0.2]
   /// Limit of the work [s], > 0 (PlanProgress). The best plan so far is the answer then, the same on every
   /// machine.
@@ -35,20 +37,21 @@ struct RacingPlanOptions {
 /// sideslip, lags and rates: a plan that such a controller can follow (docs/racing.md, eq. 1). Takes 0.2
 /// to 30 s and some 10 MB. Deterministic. Keeps nothing between calls.
 ///
-/// An open road's plan enters as it leaves: the same speed and place across the road at both ends.
+/// A plan of an open road has the same speed and offset at both ends.
 ///
-/// kInvalidArgument for a road too narrow for the car or with a bend too tight for its full
-/// lock (names the place and the radius), parameters or options out of range, and for a search that was
-/// stopped. kNotFound for one that ended without a plan. RacingLine::is_best_so_far where the budget ended
+/// Fails with kInvalidArgument for a road too narrow for the car or with a bend too tight for its full lock
+/// (with the place and the radius), for parameters or options out of range, and for a stopped search; with
+/// kNotFound for a search that ended without a plan. RacingLine::is_best_so_far is set if the budget ended
 /// it.
 [[nodiscard]] Result<road::RacingLine> plan_racing_line(const road::Track& track,
                                                         const model::VehicleParams& vehicle,
                                                         const RacingPlanOptions& options = {});
 
-/// Whether a controller can take the car round: wide enough everywhere, and no bend so tight that nothing of
-/// its lock is left to steer by; its centre of mass is at most `beside` from the middle of the road [m].
-/// `scale` of the lengths in the message. True of any open road. kInvalidArgument "the bend at s = 211.2 m
-/// leaves room for a radius of 10.60 m, and the car's full lock drives no less than 10.44 m", or the width.
+/// Checks that a controller can drive the road: it is wide enough everywhere, and no bend needs all of the
+/// car's lock. The car's centre of mass stays within `beside` [m] of the middle of the road. `scale`: factor
+/// of the lengths in the message. Open roads are not checked. Fails with kInvalidArgument "the bend at s =
+/// 211.2 m leaves room for a radius of 10.60 m, and the car's full lock drives no less than 10.44 m", or with
+/// the width.
 [[nodiscard]] Result<void> can_be_driven(const road::Track& track, const model::VehicleParams& vehicle,
                                          double beside, double scale = 1.0);
 

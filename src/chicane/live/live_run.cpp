@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Loop of a live run: paces the control cycles, takes over runs that were built, and ends recorder and
-// viewers in order.
+// Live run: its parts connected, its loop, the takeover of runs that viewers begin, and its end.
 #include "chicane/live/live_run.hpp"
 
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "chicane/live/pages.hpp"
 #include "chicane/protocol/schema_json.hpp"
@@ -57,8 +54,6 @@ LiveRun::LiveRun(const LiveRunOptions& options, std::unique_ptr<run::ClosedLoop>
         viewer_.set_limit(news);
       }} {}
 
-LiveRun::~LiveRun() = default;
-
 Result<std::unique_ptr<LiveRun>> LiveRun::create(const LiveRunOptions& options,
                                                  std::unique_ptr<run::ClosedLoop> loop,
                                                  run::RunControls& controls) {
@@ -68,7 +63,7 @@ Result<std::unique_ptr<LiveRun>> LiveRun::create(const LiveRunOptions& options,
 }
 
 Result<void> LiveRun::open() {
-  // Send the command line's settings the way that viewers' changes take.
+  // The command line's settings take the way of viewers' changes.
   if (options_.pace) {
     if (Result<void> set = settings_.set({"run.pace", *options_.pace}); !set) return set;
   }
@@ -85,7 +80,7 @@ Result<void> LiveRun::open() {
 }
 
 void LiveRun::say(std::string_view line) {
-  std::unique_lock lock(mutex_);  // viewers may come before run() does
+  std::unique_lock lock(mutex_);  // run() may set the hooks while viewers connect
   const auto say = hooks_.say;
   lock.unlock();
   if (say) say(line);
@@ -116,17 +111,16 @@ telemetry::RunSummary LiveRun::run(recording::Recorder* recorder, const LiveHook
 }
 
 telemetry::RunSummary LiveRun::drive() {
-  const run::RunHooks hooks{.on_frame =
-                                [&](const telemetry::Frame& frame) {
-                                  limit_.follow(loop_->scenario(), frame);
-                                  publisher_->frame(frame);
-                                },
-                            .on_lap = [&](const telemetry::CompletedLap& lap) { publisher_->lap(lap); },
-                            .on_change = [&](const telemetry::Change& change) { publisher_->change(change); },
-                            .on_over =
-                                [&] {
-                                  if (!publisher_->has_reported_end()) publisher_->end(loop_->summary());
-                                }};
+  run::RunHooks hooks;
+  hooks.on_frame = [&](const telemetry::Frame& frame) {
+    limit_.follow(loop_->scenario(), frame);
+    publisher_->frame(frame);
+  };
+  hooks.on_lap = [&](const telemetry::CompletedLap& lap) { publisher_->lap(lap); };
+  hooks.on_change = [&](const telemetry::Change& change) { publisher_->change(change); };
+  hooks.on_over = [&] {
+    if (!publisher_->has_reported_end()) publisher_->end(loop_->summary());
+  };
   for (;;) {
     telemetry::RunSummary summary = run::run_realtime(
         *loop_, {.step_budget = step_budget(), .stay_at_end = options_.stay_at_end}, controls_, hooks);
@@ -134,7 +128,6 @@ telemetry::RunSummary LiveRun::drive() {
   }
 }
 
-/// Takes over the run that the next change begins. False if there is none.
 bool LiveRun::take_over() {
   const run::Setting* next = controls_.settings.front();
   if (next == nullptr || !next->change.starts_anew || controls_.wants_stop) return false;
@@ -145,7 +138,7 @@ bool LiveRun::take_over() {
     built_.pop_front();
   }
   loop_ = std::move(run->loop);
-  limit_.end();  // end it here: its news must not follow the description of another road
+  limit_.end();  // before set_run(): viewers must not get the old limit after the new road
   viewer_.set_run(std::move(run->description));
   log_.begin(run->recorded->scenario);
   if (recorder_ != nullptr) recorder_->record(std::move(run->recorded));
@@ -155,7 +148,6 @@ bool LiveRun::take_over() {
   return true;
 }
 
-/// Hands a built run to the loop. Network thread.
 std::optional<Result<void>> LiveRun::built() {
   auto result = builder_.take();
   if (!result) return std::nullopt;

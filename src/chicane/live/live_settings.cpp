@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Settings of a live run: checks viewers' values, queues them for the control thread, and builds another run
-// for those that cannot change while one goes on.
+// Settings of a live run: checks viewers' values, queues them for the control thread, and begins another run
+// for values that cannot change during a run.
 #include "chicane/live/live_settings.hpp"
 
 #include <fmt/format.h>
@@ -37,7 +37,7 @@ using protocol::Control;
 using protocol::Kind;
 using protocol::Value;
 
-/// Settings of the world, which a preset leaves as they are in the current run.
+/// Keys of the world's settings, which a change of the preset leaves as they are.
 constexpr std::array<std::string_view, 7> kOfTheWorld{
     "laps", "seed", "latency_ms", "latency_jitter_ms", "time_limit_s", "turn_around_ms", "waypoints_sent"};
 
@@ -54,12 +54,37 @@ void take_car(scenario::Scenario& scenario, const scenario::Scenario& from) {
   scenario.plant_params = from.plant_params;
 }
 
-/// Scenario of a preset with a car, on the current track.
+/// Scenario with the preset, car and track of another one, and nothing else from it.
 Result<scenario::Scenario> composed(const scenario::Scenario& of) {
   return protocol::compose(
       {.scenario_file = {}, .settings = {{"preset", of.preset}, {"car", of.car}, {"track", of.track}}});
 }
 
+/// Preset `base` with the car, guard, faults and world's settings of `current`.
+Result<scenario::Scenario> with_world_of(scenario::Scenario base, const scenario::Scenario& current) {
+  base.faults = current.faults;
+  base.guard = current.guard;
+  take_car(base, current);
+  for (const protocol::Parameter& row : protocol::list()) {
+    if (!is_of_the_world(row)) continue;
+    const Result<void> kept = protocol::set(base, row, protocol::get(current, row));
+    if (!kept) return fail(kept.error());
+  }
+  return base;
+}
+
+/// Copies delay and sampling of the car in `base` if its file, or that of the car before, states them.
+void take_timing(scenario::Scenario& scenario, const scenario::Scenario& base,
+                 const std::string& car_before) {
+  scenario::Scenario before = scenario;
+  before.car = car_before;
+  const Result<scenario::Scenario> old_base = composed(before);
+  if (!old_base) return;
+  if (old_base->latency != base.latency) scenario.latency = base.latency;
+  if (old_base->control_period != base.control_period) scenario.control_period = base.control_period;
+}
+
+/// Controls that are no settings of the schema: pace, manual driving and faults.
 std::vector<Control> run_controls(bool has_world, const std::vector<Control>& faults) {
   if (!has_world) return {};
   using protocol::number_of;
@@ -76,7 +101,7 @@ std::vector<Control> run_controls(bool has_world, const std::vector<Control>& fa
   return controls;
 }
 
-/// JSON has no infinity: send its name.
+/// Value for viewers. Infinity, which JSON lacks, becomes the text "inf".
 foxglove::ParameterValue outside(const Value& value) {
   if (const auto* flag = std::get_if<bool>(&value)) return *flag;
   if (const auto* text = std::get_if<std::string>(&value)) return *text;
@@ -85,7 +110,7 @@ foxglove::ParameterValue outside(const Value& value) {
   return std::string("inf");
 }
 
-/// Value of a setting in inner units, from a viewer's message.
+/// Value of a setting from a viewer's message. Fails for lists and for nothing.
 Result<Value> inside(std::string_view key, const Option& option, const foxglove::ParameterValue& value) {
   if (const auto* flag = std::get_if<bool>(&value)) return Value(*flag);
   if (const auto* number = std::get_if<double>(&value)) return Value(*number);
@@ -205,8 +230,6 @@ Result<void> LiveSettings::set_row(const protocol::Parameter& row, const Value& 
   return change_live(*setting, std::move(changed));
 }
 
-/// Changes the current run, and the one in construction to `changed`. A change that is valid only in the
-/// latter waits for it.
 Result<void> LiveSettings::change_live(const run::Setting& setting, scenario::Scenario changed) {
   const auto& field = std::get<run::FieldValue>(setting.action);
   scenario::Scenario now = scenario_;
@@ -228,30 +251,18 @@ Result<void> LiveSettings::change_live(const run::Setting& setting, scenario::Sc
 Result<void> LiveSettings::start_anew(telemetry::Change choice, scenario::Scenario changed) {
   const std::string key(choice.name.view()), value(choice.value.view());
   if (Result<void> chosen = check_choice(key, value); !chosen) return chosen;
-  // A queue with room for the change and for the controls that are set now.
+  // The queue needs room for the change and for the controls that hand_over_controls() sends.
   if (requests_.room() < 1 + controls_.size())
     return fail(ErrorCode::kInvalidArgument, fmt::format("{}: too many changes wait; try again", key));
   const Result<scenario::Scenario> base = composed(changed);
   if (!base) return hide(fmt::format("{}: {} cannot be used here", key, value), base.error());
   if (key == "preset") {
-    scenario::Scenario fresh = *base;
-    fresh.faults = changed.faults;
-    fresh.guard = changed.guard;
-    take_car(fresh, changed);
-    for (const protocol::Parameter& row : protocol::list()) {
-      if (!is_of_the_world(row)) continue;
-      if (Result<void> kept = protocol::set(fresh, row, protocol::get(changed, row)); !kept) return kept;
-    }
-    changed = std::move(fresh);
+    Result<scenario::Scenario> fresh = with_world_of(*base, changed);
+    if (!fresh) return fail(fresh.error());
+    changed = std::move(*fresh);
   } else if (key == "car") {
     take_car(changed, value == options_.scenario.car ? options_.scenario : *base);
-    // Delay and sampling belong to the car if its file, or the previous car's, states them.
-    scenario::Scenario before = changed;
-    before.car = shown_scenario().car;
-    if (const Result<scenario::Scenario> of = composed(before)) {
-      if (of->latency != base->latency) changed.latency = base->latency;
-      if (of->control_period != base->control_period) changed.control_period = base->control_period;
-    }
+    take_timing(changed, *base, shown_scenario().car);
   }
   if (Result<void> valid = validated(changed); !valid) return valid;
   ChosenRun run{.scenario = std::move(changed)};
@@ -266,22 +277,19 @@ Result<void> LiveSettings::start_anew(telemetry::Change choice, scenario::Scenar
   return {};
 }
 
-/// Accepts a name of the library, or the value at the run's start, which may be a file.
 Result<void> LiveSettings::check_choice(std::string_view key, const std::string& value) const {
   const std::optional<protocol::Shelf> shelf = protocol::shelf_of(key);
   if (!shelf || value == protocol::get_text(options_.scenario, *protocol::find(key))) return {};
   return protocol::check_name(*shelf, value);
 }
 
-/// Viewer's version of an error: contents of files are for the operator only.
 tl::unexpected<Error> LiveSettings::hide(std::string_view what, const Error& error) const {
   if (options_.say) options_.say(fmt::format("{}: {}", what, error.message));
   return fail(error.code, fmt::format("{}; the program's own output says why", what));
 }
 
 void LiveSettings::update() {
-  const bool has_room =
-      building_ && requests_.room() >= 1 + building_->later.size() + controls_.size();  // queue has room
+  const bool has_room = building_ && requests_.room() >= 1 + building_->later.size() + controls_.size();
   const auto built = has_room ? options_.built() : std::nullopt;
   if (!built) return;
   Building building = std::move(*building_);
@@ -297,20 +305,19 @@ void LiveSettings::update() {
 
 std::vector<std::string> LiveSettings::complaints() { return std::exchange(complaints_, {}); }
 
-/// Hands over a built run as the next one; later changes follow it.
 void LiveSettings::hand_over(Building building) {
   ++runs_;
   static_cast<void>(send({.change = building.run.choices.back(), .action = {}}));
   for (const auto& [key, setting] : building.later) static_cast<void>(send(setting));
-  begin_with(building);
+  update_start(building);
   scenario_ = std::move(building.run.scenario);
   base_ = std::move(building.base);
   hand_over_controls();
 }
 
-/// Settings that come with the choice of another run are part of its start; settings changed before, or while
-/// it was built, remain changes. With another preset all settings are part of the start.
-void LiveSettings::begin_with(const Building& building) {
+// Settings that come with the choice of a run belong to its start. Settings changed before the choice, or
+// during the construction, remain changes. With another preset all settings belong to the start.
+void LiveSettings::update_start(const Building& building) {
   const scenario::Scenario& next = building.run.scenario;
   const bool is_other_preset = next.preset != scenario_.preset;
   for (const protocol::Parameter& row : protocol::list()) {
@@ -320,7 +327,6 @@ void LiveSettings::begin_with(const Building& building) {
   }
 }
 
-/// Sends pace and manual driving again: a new run knows neither. Faults end with the old run.
 void LiveSettings::hand_over_controls() {
   for (const Control& control : controls_) {
     Value& value = control_values_.find(control.key)->second;
@@ -340,13 +346,13 @@ Result<void> LiveSettings::send(const run::Setting& setting) {
 std::vector<telemetry::Change> LiveSettings::applied() {
   std::vector<telemetry::Change> changes;
   while (const telemetry::Change* change = announced_.front()) {
-    // Faults end by themselves; everything else was asked for here.
+    // Faults also begin and end by themselves; all other changes come from set().
     const auto value = control_values_.find(change->name.view());
     if (value != control_values_.end() && value->first.starts_with("fault.")) {
       value->second = change->value.view() != "false";
       has_news_ = true;
     }
-    // The description is as old as the build: report the scenario again.
+    // The description was made when the run was built: report the scenario of now.
     if (change->starts_anew && options_.on_accepted) options_.on_accepted(scenario_);
     changes.push_back(*change);
     announced_.pop();

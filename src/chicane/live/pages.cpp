@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Pages that the server of the dashboard answers to GET, and descriptions of runs for viewers.
 #include "chicane/live/pages.hpp"
 
 #include <fmt/format.h>
@@ -30,7 +31,7 @@ wire::Pages live_pages() { return {{"/mode.json", mode_page({{"mode", "live"}})}
 
 wire::Pages live_pages(const LiveSettings& settings) {
   wire::Pages pages = live_pages();
-  // Hundreds may ask for it at once: it is made once for each run, and its bytes are shared.
+  // Hundreds of viewers may ask for the schema at once: make it once for each run, and share its bytes.
   struct Made {
     std::uint64_t version = 0;
     std::shared_ptr<const std::string> bytes{};
@@ -74,7 +75,7 @@ wire::Pages replay_pages(const std::vector<ServedLog>& logs, double start) {
 }
 
 void describe(const road::Track& track, protocol::Run& run) {
-  constexpr double kRoadSpacing = 2.0;  // [m] between the drawn points of the road
+  constexpr double kRoadSpacing = 2.0;  // [m] between the drawn points of the road, in full size; chosen
   run.track = track.name();
   run.track_length = track.centre().length();
   run.is_closed = track.centre().is_closed();

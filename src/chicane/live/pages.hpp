@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Pages and files that the server of the dashboard answers to GET, and the description of a run for viewers.
 #pragma once
 
 #include <string>
@@ -15,40 +16,39 @@
 
 namespace chicane::live {
 
-/// A recording for the dashboard to open.
+/// Recording that the dashboard opens.
 struct ServedLog {
-  std::string name;  ///< name for people: "run.mcap", "branch at 12.0 s"
-  std::string file;
+  std::string name;        ///< name for people: "run.mcap", "branch at 12.0 s"
+  std::string file;        ///< path of the recording
   std::string settings{};  ///< /schema.json of the settings for other futures; empty: none
 };
 
-/// GET /mode.json of a run that is going on: {"mode":"live"}.
+/// Pages of a live run: /mode.json with {"mode":"live"}.
 [[nodiscard]] wire::Pages live_pages();
-/// The same, /schema.json and /preset.yaml of its settings, which must outlive the server.
+/// Pages of a live run with settings: /mode.json, /schema.json, /preset.yaml. `settings` outlives the server.
 [[nodiscard]] wire::Pages live_pages(const LiveSettings& settings);
-/// GET /what_if.json of an answer that must outlive the server.
+/// Adds /what_if.json; `what_if` outlives the server.
 void add_what_if(wire::Pages& pages, WhatIf& what_if);
-/// GET /rival.json, the same.
+/// Adds /rival.json; `rival` outlives the server.
 void add_rival(wire::Pages& pages, const Rival& rival);
-/// GET /mode.json that names the logs, and each of them as /log/0.mcap, /log/1.mcap, ..., its settings as
-/// /log/0.settings.json; `start` is where the dashboard's time line begins [s].
+/// Pages of a replay: /mode.json names the logs, /log/0.mcap, /log/1.mcap, ... are their files, and
+/// /log/0.settings.json, ... their settings. `start`: beginning of the dashboard's time line [s].
 [[nodiscard]] wire::Pages replay_pages(const std::vector<ServedLog>& logs, double start);
 
-/// The road of a run, for viewers and recordings: name, length, lines.
+/// Writes the road into the description of a run for viewers and recordings: name, length, lines.
 void describe(const road::Track& track, protocol::Run& run);
 
-/// Car, notices and where car and road come from; reads their files.
+/// Writes car, notices, and the origin of car and road into the description of a run; reads their files.
 void describe(const scenario::Scenario& scenario, protocol::Run& run);
 
-/// A run with our simulator, for viewers and recordings; without its limit.
+/// Description of a run with our simulator for viewers and recordings; without its limit.
 [[nodiscard]] protocol::Run description(const run::ClosedLoop& loop);
 
-/// The files of the dashboard, gzip-compressed inside the program (target chicane_web_assets,
-/// cmake/EmbedWeb.cmake). A program built without Node holds one plain page with that message.
+/// Files of the dashboard, gzip-compressed inside the program (target chicane_web_assets,
+/// cmake/EmbedWeb.cmake). A program built without Node holds one plain page that says so.
 [[nodiscard]] std::vector<net::Asset> embedded_assets();
 
-/// The page that draws reports of recordings (recording/html_report.hpp) and documents
-/// (protocol/json.hpp).
+/// Page that draws reports of recordings (recording/html_report.hpp) and documents (protocol/json.hpp).
 [[nodiscard]] recording::ReportBundle document_bundle();
 
 }  // namespace chicane::live

@@ -9,8 +9,9 @@
 namespace chicane::live {
 namespace {
 
-constexpr auto kNap = std::chrono::milliseconds(10);      // period of asking for the answer
-constexpr auto kSettle = std::chrono::milliseconds(300);  // time without changes before a new search
+// Chosen.
+constexpr auto kAnswerPoll = std::chrono::milliseconds(10);  // period of looking for the answer at the end
+constexpr auto kSettle = std::chrono::milliseconds(300);     // time without changes before a new search
 constexpr const char* kChanged = "the car's grip or mass has changed: it is being computed anew";
 constexpr const char* kOpenRoad = "the road is open: it has no laps";
 
@@ -39,16 +40,14 @@ void RunLimit::begin() {
   search_.begin({.track = *track_, .scenario = scenario_, .first_lap = first_lap_});
 }
 
-/// Answer from the cache, if it is known (run/plan_cache.hpp); else from a search.
 lap_time::LimitAnswer RunLimit::found(const Request& request, const std::function<bool()>& is_wanted) {
-  const auto bound = [&]() -> Result<lap_time::PlantLimit> {
-    if (auto known = run::known_limit(request.scenario, request.track)) return std::move(*known);
-    return run::limit_of(request.scenario, request.track,
-                         {.wants_witness = false,
-                          .budget = kBudget,
-                          .go_on = [&](std::string_view, int, double) { return is_wanted(); }});
-  };
-  const Result<lap_time::PlantLimit> limit = bound();
+  const std::optional<lap_time::PlantLimit> known = run::known_limit(request.scenario, request.track);
+  const Result<lap_time::PlantLimit> limit =
+      known ? *known
+            : run::limit_of(request.scenario, request.track,
+                            {.wants_witness = false,
+                             .budget = kBudget,
+                             .go_on = [&](std::string_view, int, double) { return is_wanted(); }});
   lap_time::LimitAnswer answer{.first_lap = request.first_lap};
   if (!limit)
     answer.why_not = limit.error().message;
@@ -75,7 +74,8 @@ void RunLimit::follow(const scenario::Scenario& now, const telemetry::Frame& fra
       searched.friction_scale != asked.friction_scale || searched.mass_scale != asked.mass_scale;
   const bool counts_anew = frame.begins && first_lap_ > 1;
   if (is_other || counts_anew) {
-    constexpr int kNext = 2;  // laps count from 1, and the running one began with the earlier car
+    // From laps completed to the next whole lap: numbers begin at 1, the running lap is left out.
+    constexpr int kNext = 2;
     searched.friction_scale = asked.friction_scale;
     searched.mass_scale = asked.mass_scale;
     first_lap_ = frame.begins ? 1 : frame.lap + kNext;
@@ -94,7 +94,6 @@ void RunLimit::give_up(std::string why) {
   answer_ = std::make_shared<const lap_time::LimitAnswer>(lap_time::LimitAnswer{.why_not = std::move(why)});
 }
 
-/// Drops the previous search.
 void RunLimit::retire() {
   search_.cancel();
   has_news_ = false;
@@ -119,7 +118,8 @@ void RunLimit::compare(telemetry::RunSummary& run, const std::atomic<bool>& want
                        std::chrono::milliseconds patience) {
   if (begins_at_ && is_awaited(run)) begin();
   const Clock::time_point end_of_patience = Clock::now() + patience;
-  while (is_awaited(run) && !wants_stop && Clock::now() < end_of_patience) std::this_thread::sleep_for(kNap);
+  while (is_awaited(run) && !wants_stop && Clock::now() < end_of_patience)
+    std::this_thread::sleep_for(kAnswerPoll);
   const bool is_cut_short = is_searching();
   end();  // no thread writes the answer after this
   if (is_cut_short || answer_ == nullptr) {

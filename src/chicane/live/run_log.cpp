@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Events of the current run in memory, with checkpoints to branch from, thinned as the run grows longer.
+// Memory of the current run: its events, and checkpoints to branch from, thinned as the run grows longer.
 #include "chicane/live/run_log.hpp"
 
 #include <fmt/format.h>
@@ -12,11 +12,12 @@
 namespace chicane::live {
 namespace {
 
-constexpr auto kCollectEvery = std::chrono::milliseconds(200);
+constexpr auto kCollectEvery = std::chrono::milliseconds(200);  // chosen: far below what the ring holds
 constexpr const char* kTooLong =
     "the run has become too long to be computed again from its start; reset it first";
 constexpr const char* kTooBusy = "the machine was too busy to keep what happened in this run; reset it first";
 
+/// Step of a recording with the inputs and the command of a step of the log.
 recording::RecordedStep recorded_of(const RunLog::Step& note) {
   recording::RecordedStep recorded;
   recorded.log_time = note.time;
@@ -59,7 +60,6 @@ void RunLog::note(const telemetry::Frame& frame) noexcept {
            .sent = {sent.steer, sent.throttle}});
 }
 
-/// Moves new events into the log. Here and up to last(): with the mutex held.
 void RunLog::collect() {
   while (Entry* entry = ring_.front()) {
     std::visit([this](auto& note) { take(note); }, *entry);
@@ -94,7 +94,6 @@ void RunLog::add(Event event) {
   ++first_.event;
 }
 
-/// Restarts the log: the car is at the start again; settings stay, faults and driven steps do not.
 void RunLog::start_anew(const Step& first) {
   std::deque<Event> kept;
   for (Event& event : events_) {
@@ -155,7 +154,6 @@ RunLog::Place RunLog::end() {
   return last();
 }
 
-/// Takes the events since the last call, on the worker, and drives the shadow run behind them.
 void RunLog::follow() {
   if (!has_checkpoints_) return static_cast<void>(end());
   const Result<Excerpt> news = since(followed_);
@@ -174,7 +172,7 @@ void RunLog::follow() {
     if (step == nullptr) continue;
     static_cast<void>(shadow_->follow(recorded_of(*step)));
     keep(place);
-    static_cast<void>(end());  // empties the ring, however late it is
+    static_cast<void>(end());  // empties the ring, which fills while the shadow run is computed
   }
 }
 
@@ -188,7 +186,6 @@ void RunLog::keep(const Place& place) {
   thin(now);
 }
 
-/// Leaves out each one whose neighbours are close enough to each other for how long ago they are.
 void RunLog::thin(double now) {
   for (std::size_t i = 1; i + 1 < checkpoints_.size();) {
     const double after = checkpoints_[i + 1].run->time();
@@ -211,7 +208,7 @@ Result<recording::BranchReport> RunLog::branch(const recording::BranchOptions& o
     for (const Checkpoint& each : checkpoints_) {
       if (!each.place.is_in_start_of(first_) || each.place.event < first_.event) continue;
       if (oldest == nullptr) oldest = &each;
-      if (each.run->time() >= options.at - 1e-9) break;
+      if (each.run->time() >= options.at - 1e-9) break;  // 1e-9 s: rounding of times
       from_there.from = each.run;
       place = each.place;
     }
@@ -223,7 +220,8 @@ Result<recording::BranchReport> RunLog::branch(const recording::BranchOptions& o
   }
   const Result<Excerpt> events = since(place);
   if (!events) return fail(events.error());
-  if (events->begin.event == 0) from_there.from.reset();  // another run has begun meanwhile
+  if (events->begin.event == 0)
+    from_there.from.reset();  // the excerpt is the whole run: another one has begun
   return recording::branch_run(events->recorded(), from_there, hooks);
 }
 

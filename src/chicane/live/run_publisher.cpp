@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Sends each cycle's frame to viewers, recorder and log, and reports laps and the end of a run.
+// Publisher of a live run: sends frames, laps, changes and the end to viewers, recorder, log and callbacks.
 #include "chicane/live/run_publisher.hpp"
 
 #include <string>
@@ -61,7 +61,6 @@ void RunPublisher::lap(const telemetry::CompletedLap& lap) {
   viewer_.publish(lap, time_);
 }
 
-/// Faults that began or ended by themselves, as changes.
 void RunPublisher::tell_faults(const telemetry::Frame& frame) {
   const std::uint32_t changed = frame.active_faults ^ reported_faults_;
   for (std::size_t i = 0; i < faults_.size() && changed != 0U; ++i) {
@@ -106,14 +105,12 @@ void RunPublisher::compare(telemetry::RunSummary& summary, const std::atomic<boo
 
 bool RunPublisher::end(const telemetry::RunSummary& summary) {
   if (std::exchange(has_reported_end_, true)) return false;
-  if (summary.completed || summary.laps_wanted == 0) {
-    viewer_.set_end(summary.completed ? "finished" : "stopped",
-                    summary.completed ? "" : "stopped by its operator");
-  } else if (summary.end_reason == "stopped") {
+  if (summary.completed)
+    viewer_.set_end("finished", "");
+  else if (summary.laps_wanted == 0 || summary.end_reason == "stopped")
     viewer_.set_end("stopped", "stopped by its operator");
-  } else {
+  else
     viewer_.set_end("failed", summary.end_reason);
-  }
   return true;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A served run as viewers see it, with futures that are driven by a plant in place of the external car.
+// Live run whose car another program simulates: its parts connected, and its futures by a plant of ours.
 #include "chicane/live/served_run.hpp"
 
 #include <fmt/format.h>
@@ -20,14 +20,15 @@
 namespace chicane::live {
 namespace {
 
-constexpr double kLeast = 1.0;       // [s] of a run before anything can be said of it
-constexpr double kLongestGap = 0.5;  // [s] between measurements of one car
-constexpr double kShortestPeriod = 0.02, kLongestPeriod = 0.2;  // [s] of the control cycle
-constexpr double kMostDelay = 0.5;                              // [s]
+// Chosen.
+constexpr double kLeastKnown = 1.0;  // [s] shortest record from which a future is computed
+constexpr double kLongestGap = 0.5;  // [s] longest time between two sightings of one car
+constexpr double kMostDelay = 0.5;   // [s] longest delay that is repeated
+constexpr double kShortestPeriod = 0.02, kLongestPeriod = 0.2;  // [s] range of the control period
 
-/// The middle one of the times between the newest measurements.
+/// Median time between the newest sightings up to `seen[to]` [s]; `otherwise` without any.
 double usual_period(const std::vector<Seen>& seen, std::size_t to, double otherwise) {
-  constexpr std::size_t kLooked = 100;  // limit of sightings that give the usual period
+  constexpr std::size_t kLooked = 100;  // most sightings in the median; chosen
   std::vector<double> periods;
   for (std::size_t i = to; i > 0 && periods.size() < kLooked; --i)
     periods.push_back(seen[i].time - seen[i - 1].time);
@@ -53,10 +54,10 @@ model::State moving(const std::vector<Seen>& seen, std::size_t i) {
   const double elapsed = now.time - before.time;
   const double turned = angle_difference(now.psi, before.psi);
   const Vec2 way{now.x - before.x, now.y - before.y};
-  constexpr double kSlow = 3.0;  // [m/s] below it the direction of the way is not known well enough
+  constexpr double kSlow = 3.0;  // [m/s] speed below which the direction of motion is too inaccurate; chosen
   const double slip =
       now.speed < kSlow ? 0.0 : angle_difference(atan2(way.y(), way.x()), before.psi + 0.5 * turned);
-  constexpr double kMostSlip = 0.5;  // [rad] more is the car put elsewhere
+  constexpr double kMostSlip = 0.5;  // [rad] larger slip shows that the car was put elsewhere; chosen
   const double kept = std::fabs(slip) < kMostSlip ? slip : 0.0;
   return {.x = now.x,
           .y = now.y,
@@ -80,15 +81,14 @@ void ServedFutures::give_up(std::string why) {
 Result<ServedFutures::Known> ServedFutures::known_at(double time) {
   const Result<RunLog::Excerpt> excerpt = log_.since({});
   if (!excerpt) return fail(excerpt.error());
-  Known known;
-  std::vector<Seen>& seen = known.seen;
+  std::vector<Seen> seen;
   for (const RunLog::Event& event : *excerpt->events) {
     const auto* step = std::get_if<RunLog::Step>(&event);
     if (step == nullptr) continue;
     const auto& [x, y, psi, speed, steer, throttle] = step->seen;
     if (!std::isfinite(x + y + psi + speed)) continue;
     if (!seen.empty() && step->time <= seen.back().time) continue;
-    // A long gap: another car, or the same one in another place.
+    // After a long gap it is another car, or the car in another place.
     if (!seen.empty() && step->time - seen.back().time > kLongestGap) seen.clear();
     seen.push_back({.time = step->time,
                     .delay = std::clamp(step->delay, 0.0, kMostDelay),
@@ -98,17 +98,15 @@ Result<ServedFutures::Known> ServedFutures::known_at(double time) {
                     .speed = speed,
                     .sent = {.steer = step->sent[0], .throttle = step->sent[1]}});
   }
-  const auto after = std::find_if(known.seen.begin(), known.seen.end(),
-                                  [&](const Seen& each) { return each.time > time + 1e-9; });
-  const auto count = static_cast<std::size_t>(after - known.seen.begin());
-  if (count < 2 || known.seen[count - 1].time - known.seen.front().time < kLeast)
+  const auto after = std::find_if(seen.begin(), seen.end(),
+                                  [&](const Seen& each) { return each.time > time + 1e-9; });  // rounding
+  const auto count = static_cast<std::size_t>(after - seen.begin());
+  if (count < 2 || seen[count - 1].time - seen.front().time < kLeastKnown)
     return fail(ErrorCode::kInvalidArgument,
                 "there is no second of this car's run before that moment that is known without a gap");
-  known.at = count - 1;
-  return known;
+  return Known{.seen = std::move(seen), .at = count - 1};
 }
 
-/// Begins `car` as a run of ours with this run's sightings up to `to`, and continues from there.
 Result<void> ServedFutures::follow(recording::ShadowRun& car, scenario::Scenario scenario,
                                    const std::vector<Seen>& seen, std::size_t to) {
   scenario = run::endless(std::move(scenario));
@@ -126,6 +124,28 @@ Result<void> ServedFutures::follow(recording::ShadowRun& car, scenario::Scenario
   return {};
 }
 
+Result<recording::StandIn> ServedFutures::compare(const scenario::Scenario& scenario, const Known& known,
+                                                  const recording::BranchHooks& hooks) {
+  const std::vector<Seen>& seen = known.seen;
+  const double end = seen[known.at].time;
+  std::size_t before = known.at;
+  while (before > 1 && end - seen[before].time < kCompared) --before;
+  recording::StandIn stand_in{.plant = scenario.plant, .compared = end - seen[before].time};
+  recording::ShadowRun check({.on_frame = [&](const telemetry::Frame& frame) {
+    const Vec2 driven = place_at(seen, frame.time);
+    stand_in.apart = std::max(stand_in.apart, hypot(frame.truth.x - driven.x(), frame.truth.y - driven.y()));
+  }});
+  if (Result<void> begun = follow(check, scenario, seen, before); !begun) return fail(begun.error());
+  bool goes_on = true;
+  check.drive([&] {
+    const double time = check.loop().time();
+    goes_on = !hooks.go_on || hooks.go_on(time);
+    return !goes_on || time >= end;
+  });
+  if (!goes_on) return fail(ErrorCode::kInvalidArgument, "given up");
+  return stand_in;
+}
+
 Result<recording::BranchReport> ServedFutures::branch(const recording::BranchOptions& options,
                                                       const recording::BranchHooks& hooks) {
   std::unique_lock lock(mutex_);
@@ -135,34 +155,18 @@ Result<recording::BranchReport> ServedFutures::branch(const recording::BranchOpt
   lock.unlock();
   const Result<Known> known = known_at(options.at);
   if (!known) return fail(known.error());
-  const std::vector<Seen>& seen = known->seen;
-
-  recording::StandIn stand_in{.plant = scenario.plant};
-  std::size_t before = known->at;
-  while (before > 1 && seen[known->at].time - seen[before].time < kCompared) --before;
-  recording::ShadowRun check({.on_frame = [&](const telemetry::Frame& frame) {
-    const Vec2 driven = place_at(seen, frame.time);
-    stand_in.apart = std::max(stand_in.apart, hypot(frame.truth.x - driven.x(), frame.truth.y - driven.y()));
-  }});
-  if (Result<void> begun = follow(check, scenario, seen, before); !begun) return fail(begun.error());
-  stand_in.compared = seen[known->at].time - seen[before].time;
-  bool goes_on = true;
-  check.drive([&] {
-    const double time = check.loop().time();
-    goes_on = !hooks.go_on || hooks.go_on(time);
-    return !goes_on || time >= seen[known->at].time;
-  });
-  if (!goes_on) return fail(ErrorCode::kInvalidArgument, "given up");
-
+  Result<recording::StandIn> stand_in = compare(scenario, *known, hooks);
+  if (!stand_in) return fail(stand_in.error());
   const auto from = std::make_shared<recording::ShadowRun>();
-  if (Result<void> begun = follow(*from, scenario, seen, known->at); !begun) return fail(begun.error());
+  if (Result<void> begun = follow(*from, scenario, known->seen, known->at); !begun)
+    return fail(begun.error());
   recording::BranchOptions from_there = options;
-  from_there.at = seen[known->at].time + 1.0;  // after the record: the futures begin where it ends
+  from_there.at = known->seen[known->at].time + 1.0;  // beyond the record: the futures begin at its end
   from_there.drives_both = true;
   from_there.from = from;
   const recording::RunEvents nothing = [](const auto&) { return Result<void>{}; };
   auto report = recording::branch_run(nothing, from_there, hooks);
-  if (report) report->stand_in = std::move(stand_in);
+  if (report) report->stand_in = std::move(*stand_in);
   return report;
 }
 
@@ -171,6 +175,7 @@ namespace {
 constexpr const char* kUnknownRoad = "the road is unknown: --track FILE sets it";
 constexpr const char* kOtherRoad = "the simulator drives on another road than --track";
 
+/// Description of a served run for viewers and recordings.
 protocol::Run describe_served(const scenario::Scenario& scenario, const controller::Controller& controller,
                               const std::optional<road::Track>& track) {
   protocol::Run run;
@@ -183,7 +188,7 @@ protocol::Run describe_served(const scenario::Scenario& scenario, const controll
   describe(scenario, run);
   if (track)
     describe(*track, run);
-  else  // the scenario's is not the simulator's
+  else  // the road of the scenario is not the simulator's
     run.origin.road_kind.clear(), run.origin.road_notes.clear();
   run.limit = track ? RunLimit::first_answer(*track) : lap_time::LimitAnswer{.why_not = kUnknownRoad};
   return run;
@@ -261,7 +266,7 @@ Result<wire::ServeSummary> ServedRun::run(recording::Recorder* recorder, const L
   };
   serving.pages = live_pages(settings);
   add_what_if(serving.pages, what_if);
-  if (track_) limit.search(*track_, scenario_);  // the control thread owns it once it starts
+  if (track_) limit.search(*track_, scenario_);  // before serve(), whose control thread then owns the limit
   auto summary =
       serve(options_, std::move(controller_), std::move(serving), &viewer, std::move(assets_), stop);
   if (!summary) return summary;

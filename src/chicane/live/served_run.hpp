@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Live run whose car another program simulates, and other futures of it by a plant of ours.
 #pragma once
 
 #include <atomic>
@@ -20,25 +21,23 @@
 #include "chicane/recording/shadow_run.hpp"
 #include "chicane/road/track.hpp"
 #include "chicane/run/roads.hpp"
-#include "chicane/run/setting.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/wire/serve.hpp"
 
 namespace chicane::live {
 
-/// Serves a car of another simulator until it is stopped: wire::serve, or the same in another dialect
-/// (ros/nodes.hpp). The hooks are called on one thread, but for `log`.
+/// Function that serves the car of another program until it is stopped: wire::serve, or ros::drive
+/// (ros/nodes.hpp). All hooks except `log` are called on one thread.
 using ServeFunction = std::function<Result<wire::ServeSummary>(
     const wire::ServeOptions&, std::unique_ptr<controller::Controller>, wire::ServeHooks, wire::Endpoint*,
     std::vector<net::Asset>, const std::atomic<bool>&)>;
 
-/// A run in which the car is simulated by another program and the controller is ours: the endpoint for the
-/// simulator, viewers, recording, limit and settings, and the data that threads exchange, as in LiveRun for
-/// our simulator.
+/// Run of our controller with a car that another program simulates: the server for the simulator, viewers,
+/// recording, limit and settings, and the data that threads exchange; as LiveRun with our simulator.
 class ServedRun {
  public:
-  /// `track`: the simulator's road, if it is known: laps are timed, and there is a limit. `assets`: files of
-  /// the dashboard. `lap`: planned, of a controller that races (run/racing.hpp).
+  /// `track`: road of the simulator; with it there is a limit. `assets`: files of the dashboard. `lap`:
+  /// planned lap of a controller that races (run/racing.hpp), or null.
   ServedRun(const net::ServerOptions& server, const scenario::Scenario& scenario,
             std::unique_ptr<controller::Controller> controller, std::optional<road::Track> track,
             std::vector<net::Asset> assets = {}, std::shared_ptr<const road::RacingRoad> lap = nullptr);
@@ -51,7 +50,7 @@ class ServedRun {
   [[nodiscard]] double step_budget() const;
 
   /// Answers simulators until `stop`. `recorder` may be null; `on_listening` gets the port once, on this
-  /// thread. Once per object. kIo if the port is taken, with the remedy.
+  /// thread. May be called once. kIo if the port is taken, with the remedy.
   [[nodiscard]] Result<wire::ServeSummary> run(recording::Recorder* recorder, const LiveHooks& hooks,
                                                const std::function<void(std::uint16_t)>& on_listening,
                                                const std::atomic<bool>& stop,
@@ -66,31 +65,32 @@ class ServedRun {
   std::vector<net::Asset> assets_;
 };
 
-/// Measured moment of a car that another program simulates.
+/// Sighting of a car that another program simulates.
 struct Seen {
-  double time = 0.0;   ///< [s]
-  double delay = 0.0;  ///< delay from the measurement to the actuators [s]
-  double x = 0.0, y = 0.0, psi = 0.0, speed = 0.0;
-  model::Command sent;
+  double time = 0.0;                                ///< [s]
+  double delay = 0.0;                               ///< delay from the measurement to the actuators [s]
+  double x = 0.0, y = 0.0, psi = 0.0, speed = 0.0;  ///< pose in W [m, rad], speed [m/s]
+  model::Command sent;                              ///< command that answered the measurement
 };
-/// Motion of the car at `seen[i]`; sideslip and yaw rate are computed from the sighting before. Pre: i > 0.
+/// State of the car at `seen[i]`; sideslip and yaw rate follow from the sighting before. Pre: i > 0.
 [[nodiscard]] model::State moving(const std::vector<Seen>& seen, std::size_t i);
 
-/// Futures of a run whose car another program simulates: both are driven by our own simulator of that car, on
-/// the known road, from the car's place. Our controller sees the minutes before again, to restore its state:
-/// the learned road, and the commands in flight. The accuracy of our simulator is measured: it drives the ten
-/// seconds before the moment, too, and is compared with the external car.
+/// Two futures of a run whose car another program simulates. Both are driven by a plant of ours in place of
+/// that car, on the known road, from the car's place. Before that, our controller repeats the minutes before
+/// the moment, which restores what it has learned and the commands in flight. The error of the plant is
+/// measured: it also drives the ten seconds before the moment, and is compared with the external car.
 class ServedFutures {
  public:
-  static constexpr double kFollowed = 150.0;  ///< length of the run before the moment [s]
-  static constexpr double kCompared = 10.0;   ///< [s]
+  static constexpr double kFollowed =
+      150.0;  ///< longest stretch before the moment that is repeated [s]; chosen
+  static constexpr double kCompared = 10.0;  ///< duration of the comparison with the external car [s]; chosen
 
-  /// `log` must outlive it.
+  /// `log` outlives this.
   explicit ServedFutures(RunLog& log) : log_{log} {}
 
-  /// Sets the settings that hold from now on; the scenario's track is the simulator's road. Any thread.
+  /// Sets the current settings; the scenario's track is the road of the simulator. Any thread.
   void assume(const scenario::Scenario& scenario);
-  /// Stops all futures: the road is not the simulator's; branch() gives `why` from now on. Any thread.
+  /// Refuses all futures from now on, with the reason `why`: the road is not the simulator's. Any thread.
   void give_up(std::string why);
 
   /// Drives both futures from `options.at` on: with the current settings, and with those in `options`. Fails
@@ -99,19 +99,26 @@ class ServedFutures {
                                                        const recording::BranchHooks& hooks);
 
  private:
+  /// Record of the external car around a moment.
   struct Known {
-    std::vector<Seen> seen;  ///< sightings of the newest car
-    std::size_t at = 0;      ///< index of the moment
+    std::vector<Seen> seen;  ///< sightings of the newest car, without gaps
+    std::size_t at = 0;      ///< index of the last sighting up to the moment
   };
+  /// Record around `time` [s]. Fails if less than a second before it is known.
   [[nodiscard]] Result<Known> known_at(double time);
+  /// Begins `car` as a run of our plant that repeats the sightings up to `seen[to]`, and continues from
+  /// there.
   [[nodiscard]] Result<void> follow(recording::ShadowRun& car, scenario::Scenario scenario,
                                     const std::vector<Seen>& seen, std::size_t to);
+  /// Drives our plant over the last kCompared before the moment, and measures its distance from the car.
+  [[nodiscard]] Result<recording::StandIn> compare(const scenario::Scenario& scenario, const Known& known,
+                                                   const recording::BranchHooks& hooks);
 
   RunLog& log_;
-  run::Roads roads_;
-  std::mutex mutex_;  ///< guards all below
-  std::optional<scenario::Scenario> scenario_;
-  std::string why_not_;
+  run::Roads roads_;                            ///< roads of the futures, made once
+  std::mutex mutex_;                            ///< guards all below
+  std::optional<scenario::Scenario> scenario_;  ///< current settings; none: the road is unknown
+  std::string why_not_;                         ///< reason of give_up(); empty: none
 };
 
 }  // namespace chicane::live

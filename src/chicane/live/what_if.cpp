@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Shadow runs for viewers: WhatIf computes both futures of a question on a thread of its own, Rival drives a
-// second car along a live run. Answers are JSON.
+// Shadow runs for viewers: WhatIf computes both futures of a question, Rival drives a second car beside a
+// live run. Answers are JSON.
 #include "chicane/live/what_if.hpp"
 
 #include <fmt/format.h>
@@ -22,8 +22,8 @@ namespace {
 /// Rounds to millimetres and milliseconds. A value that is not finite becomes null in JSON.
 double rounded(double value) { return std::round(value * 1e3) / 1e3; }
 
-/// Columns of `rows` as JSON, {"time_s": [...], ...}: each row has its numbers in the order of `names`. Every
-/// `stride`-th row and the last are kept.
+/// Rows of numbers as JSON by columns, {"time_s": [...], ...}: each row is in the order of `names`. Keeps
+/// every `stride`-th row and the last.
 template <std::size_t kCount, class Rows>
 protocol::Json columns(const std::array<const char*, kCount>& names, const Rows& rows,
                        std::size_t stride = 1) {
@@ -38,8 +38,10 @@ protocol::Json columns(const std::array<const char*, kCount>& names, const Rows&
 
 using protocol::Json;
 
-constexpr std::size_t kMostRows = 1500;  // limit of rows in a trace
+// Most rows of a trace in an answer; chosen: as many as a screen shows.
+constexpr std::size_t kMostRows = 1500;
 
+/// Error in a question: the name of a field, and its expected content.
 tl::unexpected<Error> refuse(std::string_view what, std::string_view expected) {
   return fail(ErrorCode::kInvalidArgument, fmt::format("what if: {}: expected {}", what, expected));
 }
@@ -59,12 +61,10 @@ struct Trace {
     rows.push_back({frame.time, step.distance, car.x, car.y, car.psi, frame.applied.steer, speed,
                     frame.applied.throttle, frame.lateral_error, frame.edge_distance});
   }
-  [[nodiscard]] Json json() const {
-    return columns(kNames, rows, std::max<std::size_t>(1, (rows.size() + kMostRows - 1) / kMostRows));
-  }
 };
 
 Json json_of(const recording::Future& future, const Trace& trace) {
+  const std::size_t stride = std::max<std::size_t>(1, (trace.rows.size() + kMostRows - 1) / kMostRows);
   Json passages = Json::array();
   for (const recording::Passage& each : future.passages) {
     passages.push_back({{"lap", each.lap}, {"sector", each.sector}, {"time_s", rounded(each.time)}});
@@ -80,13 +80,13 @@ Json json_of(const recording::Future& future, const Trace& trace) {
           {"off_track_events", future.off_track_events},
           {"interventions", future.interventions},
           {"passages", std::move(passages)},
-          {"trace", trace.json()}};
+          {"trace", columns(Trace::kNames, trace.rows, stride)}};
 }
 
-Json json_of(const WhatIfQuestion& question) {
-  Json settings = Json::object();
-  for (const auto& [key, value] : question.options.settings) settings[key] = value;
-  return {{"log", question.log}, {"settings", std::move(settings)}};
+Json json_of(const std::vector<std::pair<std::string, std::string>>& settings) {
+  Json json = Json::object();
+  for (const auto& [key, value] : settings) json[key] = value;
+  return json;
 }
 
 /// Number in [least, most] under `name`; `otherwise` if it is absent or null.
@@ -111,14 +111,15 @@ Result<std::string> text_of(const Json& value) {
 Result<WhatIfQuestion> read_question(std::string_view text) {
   const Json json = protocol::parse_json(text);
   if (!json.is_object()) return refuse("the question", "a JSON object");
-  constexpr double kEver = 1e9;  // later than any run [s]
+  // Limits are chosen; kEver is later than any run [s].
+  constexpr double kEver = 1e9, kMostLaps = 10.0, kMostLogs = 1000.0;
   const auto at = number_of(json, "at_s", 0.0, kEver, kEver);
   if (!at) return fail(at.error());
   const auto duration = number_of(json, "for_s", 0.1, WhatIfQuestion::kLongest, WhatIfQuestion::kLongest);
   if (!duration) return fail(duration.error());
-  const auto laps = number_of(json, "laps", 0.0, 10.0, 0.0);  // at most ten
+  const auto laps = number_of(json, "laps", 0.0, kMostLaps, 0.0);
   if (!laps) return fail(laps.error());
-  const auto log = number_of(json, "log", 0.0, 1000.0, 0.0);
+  const auto log = number_of(json, "log", 0.0, kMostLogs, 0.0);
   if (!log) return fail(log.error());
   WhatIfQuestion question;
   question.log = static_cast<std::size_t>(*log);
@@ -173,7 +174,9 @@ std::string WhatIf::computed(const Request& request, const std::function<bool()>
     return is_wanted();
   };
   const Result<recording::BranchReport> report = compute_(question, hooks);
-  Json answer{{"id", request.number}, {"state", report ? "done" : "failed"}, {"asked", json_of(question)}};
+  Json answer{{"id", request.number},
+              {"state", report ? "done" : "failed"},
+              {"asked", {{"log", question.log}, {"settings", json_of(question.options.settings)}}}};
   if (!report) {
     answer["why"] = report.error().message;
     return protocol::json_text(answer);
@@ -195,12 +198,10 @@ std::string WhatIf::computed(const Request& request, const std::function<bool()>
 
 namespace {
 
-using protocol::Json;
-
-constexpr auto kLook = std::chrono::milliseconds(5);  // period between reads of the run's log
+constexpr auto kLook = std::chrono::milliseconds(5);  // period of reading the run's log; chosen
 
 /// Whether a setting acts on the world, and so on both cars, rather than on the controller.
-bool is_of_the_world(std::string_view key) {
+bool acts_on_both(std::string_view key) {
   return key.starts_with("fault.") || key.starts_with("plant_options.") || key.starts_with("sensor.") ||
          key == "latency_ms";
 }
@@ -225,7 +226,7 @@ Result<scenario::Scenario> with_settings(scenario::Scenario scenario,
                                          const std::vector<std::pair<std::string, std::string>>& settings) {
   for (const auto& [key, value] : settings) {
     const protocol::Parameter* row = protocol::find(key);
-    if (row == nullptr || !protocol::is_live(*row) || is_of_the_world(key)) {
+    if (row == nullptr || !protocol::is_live(*row) || acts_on_both(key)) {
       return fail(ErrorCode::kInvalidArgument, printable(key) + ": got " + printable(value) +
                                                    ", expected a setting of the controller or its car");
     }
@@ -260,9 +261,7 @@ std::string Rival::answer() const {
   const std::lock_guard lock(mutex_);
   Json json{{"id", newest_}, {"state", kNames[static_cast<std::size_t>(state_)]}};
   if (!why_.empty()) json["why"] = why_;
-  Json settings = Json::object();
-  for (const auto& [key, value] : settings_) settings[key] = value;
-  json["settings"] = std::move(settings);
+  json["settings"] = json_of(settings_);
   json["run"] = json_of(laps_of_run_);
   json["rival"] = json_of(laps_);
   json["trace"] = columns(kColumns, trace_);
@@ -296,14 +295,13 @@ void Rival::build(const Request& request) {
   begin_anew_();
 }
 
-/// Drives the rival up to the run's time.
 void Rival::catch_up() {
   const Result<RunLog::Excerpt> news = log_.since(place_);
-  if (!news && is_racing()) return end(State::kEnded, "this computer could not keep up with both cars");
+  if (!news && is_racing()) return end("this computer could not keep up with both cars");
   if (!news) return;
   const RunLog::Place before = std::exchange(place_, news->end);
   if (before.scenario != 0 && before.scenario != place_.scenario)
-    return end(State::kEnded, "the run began with other choices");
+    return end("the run began with other choices");
   if (news->begin != before) begin();
   if (!is_racing()) return;  // the race starts with the run's next start
   for (const RunLog::Event& event : *news->events) {
@@ -316,11 +314,11 @@ void Rival::take(const RunLog::Step& step) {
   constexpr double kRounding = 1e-9;  // rounding of times [s]
   const run::ClosedLoop& loop = car_->loop();
   car_->drive([&] { return loop.time() >= step.time + kRounding; });
-  if (loop.is_over()) end(State::kEnded, loop.summary().end_reason);
+  if (loop.is_over()) end(loop.summary().end_reason);
 }
 
 void Rival::take(const RunLog::Change& change) {
-  if (!is_of_the_world(change.name)) return;
+  if (!acts_on_both(change.name)) return;
   if (const Result<run::Setting> setting = run::read_setting(change.as_recorded())) car_->apply(*setting);
 }
 
@@ -347,10 +345,10 @@ bool Rival::is_racing() const {
   return state_ == State::kRacing;
 }
 
-void Rival::end(State state, std::string why) {
+void Rival::end(std::string why) {
   car_.reset();
   const std::lock_guard lock(mutex_);
-  state_ = state;
+  state_ = State::kEnded;
   why_ = std::move(why);
 }
 

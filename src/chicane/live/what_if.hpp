@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Questions of viewers about a run with other settings: its other future (WhatIf), or a second car (Rival).
 #pragma once
 
 #include <array>
@@ -7,7 +8,6 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -27,31 +27,32 @@ namespace chicane::live {
 
 /// Question of a viewer: how would the run continue from a moment on with other settings?
 struct WhatIfQuestion {
-  std::size_t log = 0;                       ///< index of the recording; 0 in a live run
-  recording::BranchOptions options{};        ///< `drives_both`: the recorded future is driven on, too
-  static constexpr double kLongest = 600.0;  ///< [s] of each future
-  static constexpr std::size_t kMostSettings = 64;
+  std::size_t log = 0;                              ///< index of the recording; 0 in a live run
+  recording::BranchOptions options{};               ///< moment, settings and duration; `drives_both` is true
+  static constexpr double kLongest = 600.0;         ///< longest duration of each future [s]; chosen
+  static constexpr std::size_t kMostSettings = 64;  ///< most settings of a question; chosen
 };
 
-/// Reads {"at_s":12.5,"for_s":20,"laps":1,"log":0,"settings":{"latency_ms":60}}. `at_s` null or absent: from
-/// now on; `laps`: the line is crossed so often, whatever is reached first. kInvalidArgument in a sentence
-/// for viewers.
+/// Reads a question: {"at_s":12.5,"for_s":20,"laps":1,"log":0,"settings":{"latency_ms":60}}. Without `at_s`
+/// the moment is now. The future ends after `for_s` or after `laps` crossings of the line, whatever comes
+/// first. kInvalidArgument in a sentence for viewers.
 [[nodiscard]] Result<WhatIfQuestion> read_question(std::string_view json);
 
-/// Answers one question at a time, by computing the run again and driving both futures, on a thread of its
-/// own with low priority: control never waits. A new question takes the place of the one before. ask() and
-/// answer() are one thread's, the network thread.
+/// Answers one question at a time on a thread of low priority: computes the run again and drives both
+/// futures. Control never waits. A new question replaces the one before. ask() and answer() belong to one
+/// thread, the network thread.
 class WhatIf {
  public:
-  /// Computes a question; called on the other thread. `hooks` are handed on to recording::branch_run().
+  /// Computes the answer to a question on the thread of low priority. `hooks` are for
+  /// recording::branch_run().
   using Compute = std::function<Result<recording::BranchReport>(const WhatIfQuestion& question,
                                                                 const recording::BranchHooks& hooks)>;
 
   explicit WhatIf(Compute compute);
 
-  /// Begins, and does not wait; the number of the question, as a text.
+  /// Begins to answer a question, and does not wait. Returns the number of the question, as a text.
   [[nodiscard]] Result<std::string> ask(std::string_view json);
-  /// The newest answer, or how far it is: GET /what_if.json (docs/viewer.md).
+  /// Text for GET /what_if.json (docs/viewer.md): the newest answer, or the progress of its computation.
   [[nodiscard]] std::string answer();
 
  private:
@@ -59,36 +60,37 @@ class WhatIf {
     std::uint64_t number = 0;
     WhatIfQuestion question;
   };
+  /// Answer as JSON, computed on the task's thread.
   [[nodiscard]] std::string computed(const Request& request, const std::function<bool()>& is_wanted);
 
   Compute compute_;
-  std::uint64_t newest_ = 0;        ///< number of the last question
-  std::atomic<double> share_{0.0};  ///< share of the current question that is computed
-  std::string answer_ = R"({"id":0,"state":"none"})";
-  run::NewestTask<Request, std::string> task_;  // last
+  std::uint64_t newest_ = 0;                           ///< number of the last question
+  std::atomic<double> share_{0.0};                     ///< share of the current question that is computed
+  std::string answer_ = R"({"id":0,"state":"none"})";  ///< newest answer; empty while it is computed
+  run::NewestTask<Request, std::string> task_;         ///< last member: its thread uses the others
 };
 
-/// A second car on the stage of a live run: a shadow run on the same track, with the same car, seed and
-/// faults and other settings, from the start line on. It is driven on a thread of its own, of low priority,
-/// up to where the run is by its log; the run's thread does nothing for it.
+/// Second car beside a live run: a shadow run from the start line on, on the same track, with the same car,
+/// seed and faults, and with other settings. A thread of low priority drives it up to where the run is by its
+/// log; the thread of the run does nothing for it.
 ///
-/// What acts on the world (faults, and settings of plant, sensor and latency) acts on both at the same cycle;
-/// settings of the controller that change meanwhile act on the run's own car alone. The race ends when the
-/// run begins with other choices, or when the rival is lost.
+/// Changes that act on the world (faults, settings of plant, sensor and latency) act on both cars at the same
+/// cycle. Settings of the controller that change meanwhile act on the car of the run only. The race ends when
+/// another run begins, or when the rival is lost.
 class Rival {
  public:
-  static constexpr std::size_t kMostLaps = 100;  ///< reported of each car, the newest
-  static constexpr std::size_t kTrace = 125;     ///< poses reported of the rival, the newest: five seconds
+  static constexpr std::size_t kMostLaps = 100;  ///< newest laps of each car that are reported; chosen
+  static constexpr std::size_t kTrace = 125;     ///< newest poses of the rival that are reported; chosen: 5 s
 
-  /// `log` outlives this. `begin_anew` is called on the rival's thread when it is ready: both begin at the
-  /// line.
+  /// `log` outlives this. `begin_anew` is called on the rival's thread when the rival is ready: it has to
+  /// restart the run, so that both cars begin at the line.
   Rival(RunLog& log, std::function<void()> begin_anew);
 
-  /// Begins a race of `scenario`, on the network thread: {"settings":{"latency_ms":60}}; {} ends it. Returns
-  /// the number of the race, as a text. kInvalidArgument in a sentence for viewers: for a setting that is
-  /// unknown, out of range, or fixed during a run.
+  /// Begins a race of `scenario` with the settings in {"settings":{"latency_ms":60}}, or ends it with {};
+  /// called on the network thread. Returns the number of the race, as a text. kInvalidArgument in a sentence
+  /// for viewers: for a setting that is unknown, out of range, or fixed during a run.
   [[nodiscard]] Result<std::string> ask(std::string_view json, const scenario::Scenario& scenario);
-  /// GET /rival.json (docs/viewer.md). Any thread.
+  /// Text for GET /rival.json (docs/viewer.md). Any thread.
   [[nodiscard]] std::string answer() const;
 
  private:
@@ -100,34 +102,41 @@ class Rival {
   static constexpr std::array kColumns{"time_s",    "x_m",       "y_m",       "yaw_rad",
                                        "steer_rad", "speed_mps", "distance_m"};
 
+  // Functions of the rival's thread.
   void work();
+  /// Builds the rival of a request, or ends the race.
   void build(const Request& request);
+  /// Drives the rival up to the run's time.
   void catch_up();
   void take(const RunLog::Step& step);
   void take(const RunLog::Change& change);
   void take(const telemetry::CompletedLap& lap) { keep(laps_of_run_, lap); }
+  /// Adds the rival's pose to the trace.
   void note(const run::ClosedLoop& loop);
+  /// Begins the race at the start line.
   void begin();
-  void end(State state, std::string why);
+  /// Ends the race, for the reason `why`.
+  void end(std::string why);
+  /// Appends a lap, and drops the oldest one if there are too many.
   void keep(std::vector<telemetry::CompletedLap>& laps, const telemetry::CompletedLap& lap) const;
   [[nodiscard]] bool is_racing() const;
 
   RunLog& log_;
   std::function<void()> begin_anew_;
 
-  // The rival's thread:
-  std::optional<recording::ShadowRun> car_;
-  RunLog::Place place_;  ///< place in the run's log that the rival has reached
+  // Used by the rival's thread only.
+  std::optional<recording::ShadowRun> car_;  ///< the rival; none: no race
+  RunLog::Place place_;                      ///< place in the run's log that the rival has reached
 
-  mutable std::mutex mutex_;  ///< guards all below
-  std::optional<Request> request_;
-  std::uint64_t newest_ = 0;
-  State state_ = State::kNone;
-  std::string why_;
-  std::vector<std::pair<std::string, std::string>> settings_;
-  std::vector<telemetry::CompletedLap> laps_of_run_, laps_;
-  std::deque<std::array<double, kColumns.size()>> trace_;
-  run::Worker worker_;  // last
+  mutable std::mutex mutex_;                                   ///< guards all below
+  std::optional<Request> request_;                             ///< request that waits for the rival's thread
+  std::uint64_t newest_ = 0;                                   ///< number of the last request
+  State state_ = State::kNone;                                 ///< state of the race
+  std::string why_;                                            ///< reason of its end or failure; else empty
+  std::vector<std::pair<std::string, std::string>> settings_;  ///< settings of the rival
+  std::vector<telemetry::CompletedLap> laps_of_run_, laps_;    ///< newest laps of the run and of the rival
+  std::deque<std::array<double, kColumns.size()>> trace_;      ///< newest poses of the rival, by kColumns
+  run::Worker worker_;                                         ///< last member: its thread uses the others
 };
 
 }  // namespace chicane::live

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Run inside a browser's worker: the server interface over messages to the page, and the clock that the page
-// passes on.
+// Live run inside a browser's worker: a server that exchanges messages with the page, and the run by the
+// page's clock.
 #include "chicane/live/worker_run.hpp"
 
 #include <fmt/format.h>
@@ -46,7 +46,7 @@ void WorkerServer::acknowledge(std::size_t count) {
 
 void WorkerServer::pass_time(double now) {
   now_ = std::max(now_, now);
-  // A task added now runs in the next call: no endless loop.
+  // Tasks that are added by tasks run in the next call, so that this one ends.
   std::vector<std::function<void()>> due;
   const auto end = tasks_.upper_bound(now_);
   for (auto task = tasks_.begin(); task != end; ++task) due.push_back(std::move(task->second));
@@ -93,7 +93,7 @@ void WorkerServer::flush() {
 namespace {
 
 constexpr const char* kNoLimit = "it is not computed in a page without a program; `chicane limit` does";
-constexpr double kMaxBehind = 0.1;  // [s] of the clock: later than this, missed time is skipped
+constexpr double kLateness = 0.1;  // [s] lateness by the clock beyond which missed time is skipped; chosen
 
 protocol::Run worker_description(const run::ClosedLoop& loop) {
   protocol::Run run = description(loop);
@@ -155,7 +155,7 @@ void WorkerRun::advance(double now, const std::function<bool()>& go_on) {
   if (controls_.is_paused) return drive_paused();
   const double until = anchor_->time + (now - anchor_->clock) * anchor_->pace;
   drive(until, go_on);
-  if (std::fabs(loop_->time() - until) > kMaxBehind * anchor_->pace) anchor_.reset();
+  if (std::fabs(loop_->time() - until) > kLateness * anchor_->pace) anchor_.reset();
 }
 
 void WorkerRun::drive(double until, const std::function<bool()>& go_on) {
@@ -165,7 +165,7 @@ void WorkerRun::drive(double until, const std::function<bool()>& go_on) {
     if (!ended_) ended_ = loop_->summary();
     publisher_.end(*ended_);
     loop_->drive_on();
-    if (loop_->time() < publisher_.time()) return;  // the car was lost and is at the start again
+    if (loop_->time() < publisher_.time()) return;  // drive_on() has put a lost car back at the start
   }
 }
 
@@ -174,10 +174,9 @@ void WorkerRun::drive_paused() {
   steps_->take_up_changes();
   if (steps_->is_to_start_anew()) return;
   if (steps_->is_unseen() || steps_->take_step())
-    steps_->one_cycle();  // viewers are to see where a run begins
+    steps_->one_cycle();  // also the first one of a run, so that viewers see where it begins
 }
 
-/// Goes on with the run that the next change begins.
 void WorkerRun::take_over() {
   loop_ = std::move(built_->loop);
   viewer_.set_run(std::move(built_->description));

@@ -8,17 +8,18 @@
 #include "chicane/model/vehicle.hpp"
 #include "chicane/model/wheel_forces.hpp"
 
+/// The car model of controllers, guard and planner: motion of a single track with tyres that saturate.
+
 namespace chicane::model {
 
-/// Motion of a car in its own axes: what does not depend on its place and heading.
+/// Part of a car's state that does not depend on its position and heading, in the axes of the body.
 template <class T>
 struct BodyMotion {
-  T vx{};            ///< [m/s]
-  T vy{};            ///< [m/s]
+  T vx{};            ///< forward velocity [m/s]
+  T vy{};            ///< lateral velocity, left positive [m/s]
   T r{};             ///< yaw rate [rad/s]
   T steer{};         ///< road-wheel angle [rad]
-  T acceleration{};  ///< longitudinal acceleration by drive, brakes and drag, without cornering resistance
-                     ///< [m/s²]
+  T acceleration{};  ///< net acceleration by drive, brakes and drag, without cornering resistance [m/s²]
 };
 
 /// The car model of a tracking controller: a single track with saturating tyres, steering and drive lag,
@@ -37,6 +38,7 @@ struct BodyMotion {
 class PredictionModel {
  public:
   explicit PredictionModel(const model::VehicleParams& vehicle) noexcept { set_vehicle(vehicle); }
+  /// Changes the car.
   void set_vehicle(const model::VehicleParams& vehicle) noexcept {
     vehicle_ = vehicle;
     per_peak_ = per_peak(vehicle);
@@ -58,8 +60,8 @@ class PredictionModel {
     return {lag(vehicle_.steer_lag, dt), lag(vehicle_.drive_lag, dt)};
   }
 
-  /// v_x, v_y and r after dt [s] with the given mean road-wheel angle and net acceleration. `dt` is a double,
-  /// or one for each lane of T.
+  /// v_x, v_y and r after dt [s] with the given mean road-wheel angle [rad] and net acceleration [m/s²]. `dt`
+  /// is one number, or one for each lane of T.
   template <class T, class D>
   [[nodiscard]] CHICANE_INLINE inline BodyMotion<T> advance(const BodyMotion<T>& from, const T& steer,
                                                             const T& acceleration,
@@ -81,12 +83,12 @@ class PredictionModel {
     const T a12 = dt * (moment + (1.0 - p.steer_helper) * from.vx);
     const T a21 = turn * moment;
     const T a22 = 1.0 + turn * damping;
-    // The drive or brake force of the steered wheels points along the wheels.
+    // Drive and brake force of the front wheels point along the wheels, and so also to the side.
     const T force = (kf + front_force<false>(acceleration)) * steer;
     const T b1 = from.vy + dt * force;
     const T b2 = from.r + (turn * a) * force + turn * tires.twist;
     const T det = a11 * a22 - a12 * a21;
-    // The implicit step of a spinning car is singular for large dt: its growth is limited to fivefold.
+    // A large implicit step of a car that spins is singular: its growth is limited to fivefold.
     const T inverse_det = 1.0 / T(select(det > kLeastDeterminant, det, kLeastDeterminant));
     BodyMotion<T> to;
     to.vy = (b1 * a22 - a12 * b2) * inverse_det;
@@ -111,7 +113,7 @@ class PredictionModel {
     return to;
   }
 
-  /// Derivatives by time of v_x, v_y and r, and the use of the tyres.
+  /// Time derivatives of v_x, v_y and r, and the use of the tyres.
   template <class T>
   struct Change {
     T vx, vy;                     ///< [m/s²]
@@ -119,8 +121,8 @@ class PredictionModel {
     T square_front, square_rear;  ///< squares of TireUse::front and rear
     T along_front, along_rear;    ///< as in TireUse
   };
-  /// Derivatives at the present steering and acceleration (eq. 1–3). Smooth, for searches by second
-  /// derivatives: drive and brakes change over within kBlend.
+  /// Time derivatives at a motion (eq. 1–3). They are smooth, for searches that use second derivatives: the
+  /// change from drive to brakes is blended within kBlend.
   template <class T>
   [[nodiscard]] Change<T> change(const BodyMotion<T>& at) const noexcept {
     const model::VehicleParams& p = vehicle_;
@@ -139,14 +141,15 @@ class PredictionModel {
         .along_rear = tires.along_rear};
   }
 
-  /// Use of an axle's tyres: 1 is the peak of the tyre curve. That of its inner wheel while the axle drives,
-  /// because it spins first.
+  /// Use of an axle's tyres: 1 is the peak of the tyre curve. While the axle drives it is the use of the
+  /// inner wheel, which spins first.
   template <class T>
   struct TireUse {
     T front, rear;  ///< slip over the slip of the peak, both directions together
     /// Longitudinal force over peak force; 0 for a car without friction_coupling.
     T along_front, along_rear;
   };
+  /// Use of the tyres in a motion.
   template <class T>
   [[nodiscard]] CHICANE_INLINE inline TireUse<T> tire_use(const BodyMotion<T>& motion) const noexcept {
     const Tires<T> tires = tire_state<false>(motion, motion.steer);
@@ -154,8 +157,8 @@ class PredictionModel {
             tires.along_rear};
   }
 
-  /// Road-wheel angle for `yaw_acceleration` [rad/s²], without lag [rad]. Front slip is limited to that of
-  /// nine tenths of the peak force.
+  /// Road-wheel angle that gives a yaw acceleration [rad/s²], without lag [rad]. The front slip is limited to
+  /// that of the peak force and to kMostSlip, at which a road tyre has nine tenths of it.
   [[nodiscard]] double steer_for(const BodyMotion<double>& m, double yaw_acceleration) const noexcept {
     const model::VehicleParams& p = vehicle_;
     const Tires<double> tires = tire_state<false>(m, m.steer);
@@ -174,46 +177,53 @@ class PredictionModel {
   [[nodiscard]] double peak_slip_rear() const noexcept {
     return vehicle_.friction / (vehicle_.cornering_rear * per_peak_);
   }
-  /// Least speed in slip angles, about [m/s]. Below it they would grow without bound: slower cars are
-  /// modelled with more slip than they have.
+  /// Speed by which slip angles are kept finite [m/s]; chosen. They divide by √(v² + kSpeedFloor²).
   static constexpr double kSpeedFloor = 1.0;
   /// Normal acceleration carried by the tyres at speed v [m/s²].
   [[nodiscard]] double load(double v) const noexcept { return vehicle_.load(v); }
   [[nodiscard]] const model::VehicleParams& vehicle() const noexcept { return vehicle_; }
 
  private:
-  static constexpr double kGravity = 9.81;          ///< [m/s²]
-  static constexpr double kLeastDeterminant = 0.2;  ///< limits the growth in an implicit step to fivefold
+  static constexpr double kGravity = 9.81;  ///< [m/s²]
+  static constexpr double kLeastDeterminant =
+      0.2;  ///< limit of the growth in an implicit step: fivefold; chosen
 
+  /// State of the axles' tyres.
   template <class T>
   struct Tires {
-    T inverse_speed;
-    T square_front, square_rear;        ///< square of z in secant()
+    T inverse_speed;                    ///< one over the speed in slip angles [s/m]
+    T square_front, square_rear;        ///< square of the slip z (secant())
     T along_front, along_rear;          ///< longitudinal force over peak force
     T stiffness_front, stiffness_rear;  ///< secant stiffness per mass, k in eq. 1–3 [m/s²]
     T lost;                             ///< acceleration lost to spinning wheels or anti-lock [m/s²]
     T twist;                            ///< yaw moment by that loss, over mass [m²/s²]
   };
 
+  /// Lag of a time constant [s] over a step of dt [s].
   static Lag lag(double time_constant, double dt) noexcept {
-    if (time_constant <= 1e-4) return {};
+    constexpr double kInstant = 1e-4;  // [s] time constant that counts as none; chosen
+    if (time_constant <= kInstant) return {};
     const double decay = exp(-dt / time_constant);
     return {decay, (1.0 - decay) * time_constant / dt};
   }
 
+  /// State of the tyres in a motion with the given road-wheel angle (docs/controller.md, eq. 4a–4e), in three
+  /// parts: loads of the axles; tyres that share no force between the directions; tyres that do, by the
+  /// wheels of each axle. With kSmooth all corners are rounded.
   template <bool kSmooth, class T>
   [[nodiscard]] CHICANE_INLINE inline Tires<T> tire_state(const BodyMotion<T>& m,
                                                           const T& steer) const noexcept {
+    // Loads of the axles by weight, downforce and load transfer.
     const model::VehicleParams& p = vehicle_;
     const double per_wheelbase = 1.0 / p.wheelbase();
-    const double rest_front = p.rear_axle * per_wheelbase;  // of the load
+    const double rest_front = p.rear_axle * per_wheelbase;  // share of the load at rest
     const double rest_rear = p.front_axle * per_wheelbase;
     const T speed = sqrt(m.vx * m.vx + kSpeedFloor * kSpeedFloor);
     const T load_now = p.load_constant + (p.load_per_speed + p.load_quadratic * speed) * speed;
     // Load transfer depends on the weight alone, not on downforce.
     const T rest = p.load_quadratic > 0.0 ? T(p.load_constant / load_now) : T(1.0);
     const T transfer = (p.height / kGravity) * rest * m.acceleration;
-    T part_front = 1.0 - (1.0 / p.rear_axle) * transfer;  // of its load at rest
+    T part_front = 1.0 - (1.0 / p.rear_axle) * transfer;  // load over that at rest
     T part_rear = 1.0 + (1.0 / p.front_axle) * transfer;
     if (p.load_balance != 0.0) {
       const T pressed = p.load_balance * (1.0 - rest);
@@ -230,6 +240,8 @@ class PredictionModel {
     t.inverse_speed = 1.0 / speed;
     const T slip_front = steer - (m.vy + p.front_axle * m.r) * t.inverse_speed;
     const T slip_rear = (p.rear_axle * m.r - m.vy) * t.inverse_speed;
+
+    // Tyres whose longitudinal and lateral force do not depend on each other.
     const double per_friction = 1.0 / p.friction;
     if (!(p.friction_coupling > 0.0)) {
       const auto axle = [&](double cornering, const T& slip, const T& load, T& square, T& stiffness)
@@ -243,11 +255,11 @@ class PredictionModel {
       t.along_front = t.along_rear = t.lost = t.twist = T(0.0);
       return t;
     }
-    // Both wheels of an axle have its slip angle and half its longitudinal force, and loads of their own.
+
+    // Lateral acceleration by the tyres (eq. 4d), with equal loads of both wheels of an axle. It differs from
+    // v_x r while the slip angle of the car changes.
     const T drive = positive<kSmooth>(m.acceleration, kBlend);
     const T brake = drive - m.acceleration;
-    // Lateral acceleration by the tyres (docs/controller.md, eq. 4d), as if both wheels of an axle carried
-    // the same: v_x r differs from it while the slip angle of the car changes.
     const T pulls[2] = {T(p.drive_share_front * drive + p.brake_share_front * brake),
                         T((1.0 - p.drive_share_front) * drive + (1.0 - p.brake_share_front) * brake)};
     const T slips[2] = {(p.cornering_front * per_friction) * slip_front,
@@ -261,7 +273,9 @@ class PredictionModel {
     const T sideways = rest * (lateral(slips[0], across[0], T(grip_front * load_front), pulls[0]) +
                                lateral(slips[1], across[1], T(grip_rear * load_rear), pulls[1]));
     const T side = 2.0 * positive<kSmooth>(sideways, kBlend) - sideways;
-    // 1 while driving, when the inner wheel spins; 0 while braking, when anti-lock prevents it.
+
+    // Both wheels of an axle have its slip angle and half its longitudinal force, and loads of their own.
+    // `driving` is 1 while the inner wheel may spin, and 0 while braking, when anti-lock prevents it.
     const T driving = 0.5 + 0.5 * m.acceleration / sqrt(m.acceleration * m.acceleration + kBlend * kBlend);
     struct LoadedAxle {
       double cornering, unloading, rest;
@@ -273,12 +287,11 @@ class PredictionModel {
                            {p.cornering_rear, unloading_rear_, rest_rear, squares[1], across[1] * across[1],
                             part_rear, grip_rear, pulls[1]}};
     T lost[2] = {T(0.0), T(0.0)};
-    // Not unrolled: a quarter of the code to compile.
+    // Loops that are not unrolled make a quarter of the code to compile.
 #pragma GCC unroll 1
     for (LoadedAxle& axle : axles) {
       const T shift = axle.unloading * side;
-      const T parts[2] = {least<kSmooth>(axle.part - shift),
-                          axle.part + shift};  // of the inner and of the outer wheel
+      const T parts[2] = {least<kSmooth>(axle.part - shift), axle.part + shift};  // inner and outer wheel
       T use[2], square[2], stiffness[2];
 #pragma GCC unroll 1
       for (int i = 0; i < 2; ++i) {
@@ -287,7 +300,7 @@ class PredictionModel {
         use[i] = (0.5 * per_friction) * axle.pull / load;
         const T over = positive<kSmooth>(T(use[i] - kMostAlong), kSmoothUse);
         lost[i] = lost[i] + over * (p.friction * load);
-        // Longitudinal slip that gives this force together with the slip across (similarity).
+        // Longitudinal slip that gives this force together with the lateral slip (similarity).
         const T kept = use[i] - over;
         const T u2 = kept * kept;
         const T first = secant(axle.z2 + u2 / (axle.across2 * sqrt(1.0 - u2 * u2)));
@@ -312,9 +325,9 @@ class PredictionModel {
     return t;
   }
 
-  /// Secant of the tyre curve over its initial slope, by the square of the slip z in units of peak force over
-  /// initial stiffness: of the magic formula, sin(C atan(z/C))/z, or of the original simulator's curve, which
-  /// falls by a quarter between z = 1 and 2.5.
+  /// Secant of the tyre curve over its initial slope, by the square of the slip z, which is in units of peak
+  /// force over initial stiffness. The curve is the magic formula, with the secant sin(C atan(z/C))/z, or the
+  /// original simulator's, which falls by a quarter between z = 1 and 2.5 (eq. 4a).
   template <class T>
   [[nodiscard]] [[gnu::noinline]] T secant(const T& square) const noexcept {
     const T least = square + kLeastSquare;
@@ -334,7 +347,7 @@ class PredictionModel {
       return positive_part(x);
     }
   }
-  /// Drive and brake force of the front wheels by mass.
+  /// Drive and brake force of the front wheels over the car's mass, at a net acceleration [m/s²].
   template <bool kSmooth, class T>
   [[nodiscard]] CHICANE_INLINE inline T front_force(const T& acceleration) const noexcept {
     const T drive = positive<kSmooth>(acceleration, kBlend);
@@ -355,21 +368,21 @@ class PredictionModel {
   }
   /// One over the slip z (secant()) of the peak force.
   static double per_peak(const model::VehicleParams& p) noexcept {
-    constexpr double kHalfPi = 1.5707963267948966;
-    return p.tire_shape > 0.0 ? 1.0 / (p.tire_shape * tan(kHalfPi / p.tire_shape)) : 1.0;
+    return p.tire_shape > 0.0 ? 1.0 / (p.tire_shape * tan(0.5 * kPi / p.tire_shape)) : 1.0;
   }
 
+  // Chosen.
   static constexpr double kMostSlip = 1.4;      ///< largest front slip z of steer_for()
   static constexpr double kMostAlong = 0.95;    ///< largest longitudinal force, share of the peak
   static constexpr double kLeastSide = 1e-3;    ///< keeps quotients defined without acceleration [m/s²]
   static constexpr double kLeastLoad = 0.1;     ///< least share of the load at rest, and least 1 − u²
   static constexpr double kLeastSquare = 1e-8;  ///< least square of a slip: the secant has a kink at 0
-  // Widths over which change() is smooth where advance() has a kink; kBlend blends wheels in both.
-  static constexpr double kSmoothUse = 0.02;             ///< at kMostAlong, share of the peak
-  static constexpr double kBlend = 0.3;                  ///< between drive and brakes [m/s²]
-  static constexpr double kSmoothLoad = 0.05;            ///< at kLeastLoad, share of the load at rest
-  double unloading_front_ = 0.0, unloading_rear_ = 0.0;  ///< [s²/m]
-  double per_peak_ = 1.0;                                ///< one over the slip z of the peak force
+  // Widths over which change() rounds corners of advance(); kBlend blends the wheels of an axle in both.
+  static constexpr double kSmoothUse = 0.02;             ///< width at kMostAlong, share of the peak
+  static constexpr double kBlend = 0.3;                  ///< width between drive and brakes [m/s²]
+  static constexpr double kSmoothLoad = 0.05;            ///< width at kLeastLoad, share of the load at rest
+  double unloading_front_ = 0.0, unloading_rear_ = 0.0;  ///< unloading() of the axles [s²/m]
+  double per_peak_ = 1.0;                                ///< per_peak()
   model::VehicleParams vehicle_;
 };
 

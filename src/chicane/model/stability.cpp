@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Bounds that keep the car stable for a controller with delay: braking in a bend, and slip of the rear tyres
-// beyond their peak.
+// Tables of the bounds that keep a car stable for a controller with delay: braking in a bend, and slip of the
+// rear tyres beyond their peak.
 #include "chicane/model/stability.hpp"
 
 namespace chicane::model {
 namespace {
 
 constexpr double kGravity = 9.81;    // [m/s²]
-constexpr int kHalvings = 8;         // halvings of the range of forces, for the table
-constexpr double kMostUse = 0.999;   // beyond this use an axle slides
-constexpr double kLeastUse = 1e-6;   // below it its curve is its tangent
-constexpr double kLeastLoad = 0.05;  // load of a lifted axle, over the load at rest
-constexpr double kRealTyre = 1.5;    // shape of the curve where the car's is not a magic formula
-constexpr double kMostAngle = 1.57;  // [rad] c arctan(z / c) ends there
+constexpr int kHalvings = 8;         // halvings of the range of forces: error 1/256 of the friction; chosen
+constexpr double kMostUse = 0.999;   // use from which on an axle slides; chosen
+constexpr double kLeastUse = 1e-6;   // use below which the curve is its tangent; chosen
+constexpr double kLeastLoad = 0.05;  // load of a lifted axle, over the load at rest; chosen
+constexpr double kRealTyre = 1.5;    // shape for cars without a magic formula: that of the road car
+constexpr double kMostAngle = 1.57;  // [rad] limit of arctan(z / c): just below π / 2
+constexpr double kStep = 0.01;       // step between tested slips; chosen
+constexpr int kFrontSlips = 9;       // front slips at which stability is checked; chosen
 
 }  // namespace
 
@@ -47,24 +49,25 @@ double BrakingStability::slope(const Axle& axle, double use, double force_over_l
   const double grip = load * (1.0 + car_.load_sensitivity * (1.0 - load));
   const double across = use / grip;
   const double along = axle.pull * force_over_load / (friction_ * grip);
-  const double all = hypot(across, along);
+  const double combined = hypot(across, along);
   const double at_rest = axle.cornering * axle.share * grip;
-  if (all < kLeastUse) return at_rest;
-  if (all > kMostUse) return 0.0;
-  // Tangent and secant of sin(c arctan(z / c)) where it is `all`.
+  if (combined < kLeastUse) return at_rest;
+  if (combined > kMostUse) return 0.0;
+  // Tangent and secant of sin(c arctan(z / c)) at the slip z for which it is the combined use.
   const double shape = car_.tire_shape > 0.0 ? car_.tire_shape : kRealTyre;
-  const double angle = std::min(asin(all) / shape, kMostAngle);
+  const double angle = std::min(asin(combined) / shape, kMostAngle);
   const double cosine = cos(angle);
-  const double tangent = std::sqrt(1.0 - all * all) * cosine * cosine;
-  const double secant = all * cosine / (shape * sin(angle));
-  return at_rest * all * all / (along * along / secant + across * across / tangent);
+  const double tangent = std::sqrt(1.0 - combined * combined) * cosine * cosine;
+  const double secant = combined * cosine / (shape * sin(angle));
+  return at_rest * combined * combined / (along * along / secant + across * across / tangent);
 }
 
 double BrakingStability::pole(double v, double use, double force) const noexcept {
   const double load = car_.load(v);
-  const double more = car_.load_balance * (1.0 - car_.load_constant / load);  // share of the load, in front
-  const double front = load * (1.0 + more / front_.share) * slope(front_, use, force / load);
-  const double rear = load * (1.0 - more / rear_.share) * slope(rear_, use, force / load);
+  // Share of the load that downforce moves to the front axle.
+  const double moved = car_.load_balance * (1.0 - car_.load_constant / load);
+  const double front = load * (1.0 + moved / front_.share) * slope(front_, use, force / load);
+  const double rear = load * (1.0 - moved / rear_.share) * slope(rear_, use, force / load);
   if (!(rear > 0.0)) return std::numeric_limits<double>::infinity();
   return yaw_pole(car_, v, {front, rear});
 }
@@ -80,14 +83,6 @@ double BrakingStability::most_braking(double v, double use) const noexcept {
   const auto between = [&](const std::array<double, kUses>& at) { return at[k] + on * (at[k + 1] - at[k]); };
   return between(most_[i]) + up * (between(most_[i + 1]) - between(most_[i]));
 }
-
-namespace {
-
-constexpr double kHalfPi = 1.5707963267948966;
-constexpr double kStep = 0.01;  // step between tested slips
-constexpr int kFrontSlips = 9;  // front slips at which stability is checked
-
-}  // namespace
 
 SlidingBound::SlidingBound(const VehicleParams& car, double delay) noexcept : car_{car} {
   if (car.friction_coupling > 0.0) return;
@@ -115,9 +110,10 @@ double SlidingBound::longest_delay(const VehicleParams& car) noexcept {
 double SlidingBound::slope(double slip) const noexcept {
   const double c = car_.tire_shape;
   if (c > 0.0) {
-    const double z = slip * tan(kHalfPi / c);
+    const double z = slip * tan(0.5 * kPi / c);
     return cos(c * atan(z)) / (1.0 + z * z);
   }
+  // The original simulator's curve (docs/controller.md, eq. 4a).
   if (slip < 1.0) return 1.0 + 2.0 * slip - 3.0 * slip * slip;
   const double w = std::min((slip - 1.0) / 1.5, 1.0);
   return -w * (1.0 - w);

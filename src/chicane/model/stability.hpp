@@ -11,6 +11,9 @@
 #include "chicane/base/math.hpp"
 #include "chicane/model/vehicle.hpp"
 
+/// Stability of yaw and sideslip: the poles of a car, and bounds on braking and on slip up to which a
+/// controller with delay can catch it.
+
 namespace chicane::model {
 
 /// Slopes of the axles' lateral forces over their slip angles, divided by the car's mass [m/s² per rad].
@@ -19,9 +22,9 @@ struct AxleSlopes {
   double rear;
 };
 
-/// One over the static stability at speed v [m/s]: (1 − h) v² (a k_f − b k_r) over k_f k_r L². Above 1 the
-/// car turns away from its path by itself; negative where it understeers, infinite where the rear axle
-/// slides, −1 where only the front one does.
+/// Static instability at speed v [m/s]: (1 − h) v² (a k_f − b k_r) over k_f k_r L². Above 1 the car turns
+/// away from its path by itself. Negative for a car that understeers, infinite when the rear axle slides, −1
+/// when only the front axle slides.
 [[nodiscard]] inline double static_instability(const VehicleParams& car, double v,
                                                const AxleSlopes& k) noexcept {
   if (!(k.rear > 0.0)) return std::numeric_limits<double>::infinity();
@@ -30,7 +33,7 @@ struct AxleSlopes {
          (k.front * k.rear * car.wheelbase() * car.wheelbase());
 }
 
-/// The right-most real part of the poles of yaw and sideslip [1/s] at speed v > 0 [m/s]; slopes of any sign.
+/// Right-most real part of the poles of yaw and sideslip [1/s] at speed v > 0 [m/s]; slopes of any sign.
 [[nodiscard]] inline double yaw_pole(const VehicleParams& car, double v, const AxleSlopes& k) noexcept {
   const double a = car.front_axle, b = car.rear_axle, wheelbase = car.wheelbase();
   const double turn = car.mass / car.yaw_inertia;
@@ -45,18 +48,19 @@ struct AxleSlopes {
 /// ones and answer less to more slip (docs/controller.md, eq. 14a–14c).
 class BrakingStability {
  public:
-  /// The unstable pole that is left to the controller: in 100 ms an error grows by a tenth [1/s].
+  /// Largest unstable pole that a controller has to catch [1/s]; chosen: in 100 ms an error grows by a tenth.
   static constexpr double kMostPole = 1.0;
 
-  /// `most_pole`: that is left to the controller [1/s]. Takes some 0.1 ms.
+  /// Bound for poles up to `most_pole` [1/s]. Takes some 0.1 ms.
   explicit BrakingStability(const VehicleParams& car, double most_pole = kMostPole) noexcept;
 
-  /// Largest braking force over mass [m/s²] that leaves the car at speed v [m/s] no pole above that.
-  /// `use` is the share of its grip that it uses sideways; more than 1 counts as 1. From a table, in 10 ns.
-  /// Infinite where the tyres do not share force between the directions.
+  /// Largest braking force over mass [m/s²] at speed v [m/s] with no pole above the bound. `use`: share of
+  /// its grip that the car uses sideways; more than 1 counts as 1. From a table, in 10 ns. Infinite for tyres
+  /// that do not share force between the directions.
   [[nodiscard]] double most_braking(double v, double use) const noexcept;
-  /// The same with continuous slopes, for searches: equal at the table's values, elsewhere through them by
-  /// cubics. T is double, or holds derivatives. Pre: the tyres share force.
+  /// Largest braking force like most_braking(), with continuous slopes, for searches: cubics through the
+  /// values of the table. T is double, or holds derivatives. Pre: the tyres share force between the
+  /// directions.
   template <class T>
   [[nodiscard]] T smooth_most_braking(const T& v, const T& use) const noexcept {
     const auto [i, up] = cell<kSpeeds>(T((v - kLeastSpeed) * (1.0 / kSpeedStep)));
@@ -69,28 +73,29 @@ class BrakingStability {
     }
     return cubic(at, up);
   }
-  /// The share of its grip that the car uses sideways with a lateral acceleration by tyres [m/s²] at speed v.
+  /// Share of its grip that the car uses sideways, for a lateral acceleration by tyres [m/s²] at speed v
+  /// [m/s].
   template <class T>
   [[nodiscard]] T use(const T& lateral, const T& v) const noexcept {
     const T load = car_.load_constant + (car_.load_per_speed + car_.load_quadratic * v) * v;
     return lateral / (friction_ * load);
   }
-  /// The right-most real part of the poles of yaw and sideslip [1/s] at speed v > 0 [m/s] and braking force
-  /// over mass `force` >= 0 [m/s²], with the slopes that the tyres' curves have there;
-  /// infinite where the rear axle slides.
+  /// Right-most real part of the poles of yaw and sideslip [1/s] at speed v > 0 [m/s] and braking force over
+  /// mass `force` >= 0 [m/s²], by the slopes of the tyres' curves there; infinite when the rear axle slides.
   [[nodiscard]] double pole(double v, double use, double force) const noexcept;
 
-  /// The car it was made for.
+  /// Car of this bound.
   [[nodiscard]] const VehicleParams& vehicle() const noexcept { return car_; }
 
  private:
+  /// Axle while braking.
   struct Axle {
     double cornering = 0.0;  ///< [1/rad]
     double share = 0.0;      ///< share of the load at rest
-    double transfer = 0.0;   ///< share of that load which a unit of braking force over load adds
-    double pull = 0.0;       ///< the axle's share of the braking force over its share of the load
+    double transfer = 0.0;   ///< relative change of its load for each unit of braking force over load
+    double pull = 0.0;       ///< share of the braking force over share of the load
   };
-  /// Change of the axle's lateral force by its slip angle over the car's load [1/rad].
+  /// Slope of an axle's lateral force over its slip angle, divided by the car's load [1/rad].
   [[nodiscard]] double slope(const Axle& axle, double use, double force_over_load) const noexcept;
 
   /// Cell of a table of kSize values: its first index, and the weight of the next value.
@@ -119,39 +124,40 @@ class BrakingStability {
     return at[1] + share * (out + share * ((3.0 * rise - 2.0 * out - in) + share * (out + in - 2.0 * rise)));
   }
 
+  // Size of the table; chosen: speeds up to 96 m/s, uses in steps of an eighth.
   static constexpr int kSpeeds = 12;
   static constexpr int kUses = 9;
-  static constexpr double kLeastSpeed = 8.0;  ///< [m/s]
-  static constexpr double kSpeedStep = 8.0;   ///< [m/s]
+  static constexpr double kLeastSpeed = 8.0;  ///< first speed [m/s]
+  static constexpr double kSpeedStep = 8.0;   ///< step of the speeds [m/s]
 
   VehicleParams car_;
-  double friction_ = 1.0;
+  double friction_ = 1.0;  ///< VehicleParams::cornering_friction()
   Axle front_, rear_;
-  std::array<std::array<double, kUses>, kSpeeds> most_{};
+  std::array<std::array<double, kUses>, kSpeeds> most_{};  ///< table of most_braking() [m/s²]
 };
 
 /// Bound on the rear tyres' slip beyond the peak of their curve, up to which a controller with delay still
-/// holds the car: yaw and sideslip have a pole to the right there, and an error grows by it until a command
-/// acts (docs/limit.md, eq. 13 to 17). Slips are over the slip at the peak.
+/// holds the car. Beyond the peak yaw and sideslip have an unstable pole, by which an error grows until a
+/// command acts (docs/limit.md, eq. 13 to 17). Slips are relative to the slip at the peak.
 class SlidingBound {
  public:
-  static constexpr double kMostGrowth = 1.5;  ///< largest growth of an error within the delay
-  static constexpr double kFrontSlope = 0.5;  ///< share of the slope at rest that the front tyres keep
-  static constexpr double kMostSlip =
-      1.5;  ///< two thirds of the way to where the original curve falls most steeply
-  static constexpr double kAssumedDelay = 0.14;  ///< [s] 100 ms of latency and a control period
+  static constexpr double kMostGrowth = 1.5;  ///< largest growth of an error within the delay; chosen
+  static constexpr double kFrontSlope = 0.5;  ///< least slope of the front tyres, over that at rest; chosen
+  /// Largest slip; chosen: two thirds of the way to the steepest fall of the original simulator's curve.
+  static constexpr double kMostSlip = 1.5;
+  static constexpr double kAssumedDelay = 0.14;  ///< 100 ms of latency and a control period of 40 ms [s]
 
-  /// `delay`: from a measurement to its command's effect [s], > 0. Takes some 0.1 ms.
+  /// Bound for a delay from a measurement to its command's effect [s], > 0. Takes some 0.1 ms.
   explicit SlidingBound(const VehicleParams& car, double delay = kAssumedDelay) noexcept;
 
-  /// The longest delay that permits() [s]; 0: none does.
+  /// Longest delay for which permits() is true [s]; 0: it never is.
   [[nodiscard]] static double longest_delay(const VehicleParams& car) noexcept;
-  /// Whether the car may slide at any speed of the table. False for tyres that share their force between the
+  /// Whether the car may slide at all speeds of the table. False for tyres that share force between the
   /// directions: drive and brakes change their slopes.
   [[nodiscard]] bool permits() const noexcept { return permits_; }
-  /// Most slip of the front tyres.
+  /// Largest slip of the front tyres.
   [[nodiscard]] double front() const noexcept { return front_; }
-  /// Most slip of the rear tyres at speed v [m/s], with continuous slopes: cubics through a table. T is
+  /// Largest slip of the rear tyres at speed v [m/s], with continuous slopes: cubics through a table. T is
   /// double, or holds derivatives.
   template <class T>
   [[nodiscard]] T rear(const T& v) const noexcept {
@@ -166,12 +172,12 @@ class SlidingBound {
     return value(i) +
            share * (out + share * ((3.0 * rise - 2.0 * out - in) + share * (out + in - 2.0 * rise)));
   }
-  /// Share of these bounds in a lap at speed v [m/s], 0 to 1; the remainder is for a lap that does not slide.
-  /// Full below 42 m/s, none above 47: an error of place grows with the speed, and at the peak of the tyres
-  /// no force is left to correct it.
+  /// Share of these bounds that a lap uses at speed v [m/s], 0 to 1; the rest is the bound of a lap that does
+  /// not slide. An error of position grows with the speed, and at the peak of the tyres no force is left to
+  /// correct it.
   template <class T>
   [[nodiscard]] static T share(const T& v) noexcept {
-    constexpr double kAll = 42.0, kNone = 47.0;  // [m/s]
+    constexpr double kAll = 42.0, kNone = 47.0;  // [m/s] speeds up to which, and from which on; chosen
     const T t = (kNone - v) * (1.0 / (kNone - kAll));
     if (value_of(t) <= 0.0) return T(0.0);
     if (value_of(t) >= 1.0) return T(1.0);
@@ -179,26 +185,28 @@ class SlidingBound {
   }
   /// Largest value of rear().
   [[nodiscard]] double most_rear() const noexcept { return *std::max_element(rear_.begin(), rear_.end()); }
-  /// The right-most real part of the poles of yaw and sideslip [1/s] at speed v > 0 [m/s] with these slips.
+  /// Right-most real part of the poles of yaw and sideslip [1/s] at speed v > 0 [m/s] with these slips.
   [[nodiscard]] double pole(double v, double front_slip, double rear_slip) const noexcept;
 
  private:
+  // Size of the table; chosen: speeds up to 60 m/s.
   static constexpr int kSpeeds = 12;
-  static constexpr double kLeastSpeed = 5.0;  ///< [m/s]
-  static constexpr double kSpeedStep = 5.0;   ///< [m/s]
+  static constexpr double kLeastSpeed = 5.0;  ///< first speed [m/s]
+  static constexpr double kSpeedStep = 5.0;   ///< step of the speeds [m/s]
 
+  /// Value of the table for the i-th speed, or the nearest one.
   [[nodiscard]] double value(int i) const noexcept {
     return rear_[static_cast<std::size_t>(std::clamp(i, 0, kSpeeds - 1))];
   }
-  /// Slope of the tyres' curve over that at rest.
+  /// Slope of the tyres' curve at a slip, over that at rest.
   [[nodiscard]] double slope(double slip) const noexcept;
-  /// The largest pole with any slip of the front tyres within their bound.
+  /// Largest pole with any slip of the front tyres within their bound [1/s].
   [[nodiscard]] double worst_pole(double v, double rear_slip) const noexcept;
 
   VehicleParams car_;
-  double front_ = 1.0;
-  std::array<double, kSpeeds> rear_{};
-  bool permits_ = false;
+  double front_ = 1.0;                  ///< front()
+  std::array<double, kSpeeds> rear_{};  ///< table of rear()
+  bool permits_ = false;                ///< permits()
 };
 
 }  // namespace chicane::model

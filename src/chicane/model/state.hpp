@@ -5,6 +5,8 @@
 
 #include "chicane/base/vec2.hpp"
 
+/// State, command, pose and measurement of a car: what plants, controllers and guard exchange.
+
 namespace chicane::model {
 
 /// Planar motion of a car, in the axes of the whole project (ISO 8855, docs/notation.md): world W

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Parameter sets of two cars, and their longitudinal model: acceleration by pedal, and pedal by acceleration.
+// Option rows of a car's parameters, its longitudinal model (acceleration by pedal, pedal by acceleration),
+// and the parameters of two shipped cars.
 #include "chicane/model/vehicle.hpp"
 
 #include <algorithm>
@@ -96,13 +97,13 @@ constexpr std::array kOptions{
                                        "Throttle that releases latched brakes."),
 };
 
-/// Deceleration by drag [m/s²]; has the sign of v.
+/// Deceleration by drag at speed v [m/s²], with the sign of v.
 double drag(const VehicleParams& p, double v) noexcept {
   const double direction = v > 0.0 ? 1.0 : (v < 0.0 ? -1.0 : 0.0);
   return direction * p.drag_constant + p.drag_linear * v + p.drag_quadratic * v * std::fabs(v);
 }
 
-/// Largest acceleration by the engine [m/s²].
+/// Largest acceleration by the drive at speed v [m/s²].
 double drive_limit(const VehicleParams& p, double v) noexcept {
   const double by_power = v > 0.0 ? p.drive_power_per_mass / v : std::numeric_limits<double>::infinity();
   return std::min(p.drive_acceleration, by_power);
@@ -119,7 +120,7 @@ double lowest_throttle(const VehicleParams& p, double v) noexcept {
 }
 
 double longitudinal_acceleration(const VehicleParams& p, double throttle, double v) noexcept {
-  const double pedal = std::clamp(throttle, lowest_throttle(p, v), 1.0);  // the wheels lock beyond it
+  const double pedal = std::clamp(throttle, lowest_throttle(p, v), 1.0);  // below the lowest the wheels lock
   const double negative = v < p.reverse_speed ? p.reverse_acceleration : p.brake_acceleration;
   const double force =
       pedal >= 0.0 ? std::min(p.drive_acceleration * pedal, drive_limit(p, v)) : negative * pedal;

@@ -11,11 +11,13 @@
 #include "chicane/base/result.hpp"
 #include "chicane/model/state.hpp"
 
+/// Parameters of a car, its longitudinal model, and the conversion of model cars to full size.
+
 namespace chicane::model {
 
-/// An axle, as shares of the car.
+/// An axle: its position, and its shares of the car's loads and forces.
 struct Axle {
-  double x;            ///< ahead of the centre of mass [m]
+  double x;            ///< position ahead of the centre of mass [m]
   double half_track;   ///< distance from its middle to the centre of a wheel [m]
   double rest;         ///< load of each of its wheels at rest, over the car's
   double roll_share;   ///< share of the load moved to the outer wheels in a bend
@@ -34,13 +36,13 @@ struct CarBody {
   double yaw_inertia = 2000.0;     ///< [kg m²]
   double height = 0.50;            ///< height of the centre of mass; 0: no load transfer [m]
   double roll_share_front = 0.58;  ///< front share of the load moved across in a bend
-  double brake_share_front =
-      0.72;  ///< front share of braking; the front locks first up to 0.9 g, as UN R13-H asks of road cars
+  /// Front share of braking; up to 0.9 g the front wheels lock first, as UN R13-H demands of road cars.
+  double brake_share_front = 0.72;
   double drive_share_front = 0.40;          ///< front share of the drive; open differentials
   double friction = 1.20;                   ///< peak force over load, at rest
   double load_sensitivity = 0.08;           ///< share of the friction that a tyre loses when its load doubles
   double steer_limit = 0.4363323129985824;  ///< largest road-wheel angle, 25° [rad]
-  double steer_rate_limit = 1.5707963267948966;  ///< 90°/s [rad/s]
+  double steer_rate_limit = 1.5707963267948966;  ///< largest rate of the wheel angle, 90°/s [rad/s]
   double steer_lag = 0.05;                       ///< time constant of the steering [s], 0 = instant
   double drive_lag = 0.1;                        ///< time constant of drive and brakes [s]
 
@@ -82,54 +84,55 @@ struct VehicleParams : CarBody {
   std::string name = "udacity";
 
   double scale = 1.0;  ///< scale of a model car, 0.1 for 1:10: settings of controller and guard in metres and
-                       ///< seconds are for a car in full size (Similarity)
+                       ///< seconds are for the car in full size (Similarity)
 
   // Geometry.
-  double length = 4.47;            ///< body [m]
-  double width = 2.43;             ///< body [m]
-  double kinematic_length = 2.67;  ///< L_f of the described model: ψ' = v δ / L_f [m]
+  double length = 4.47;            ///< length of the body [m]
+  double width = 2.43;             ///< width of the body [m]
+  double kinematic_length = 2.67;  ///< L_f of the kinematic model ψ' = v δ / L_f [m]
 
   // Tyres: force = load · friction · curve(cornering · slip / friction), load = mass · (load_0 + load_v · v +
   // load_vv · v²) by axle (docs/controller.md, eq. 4a–4c).
-  double cornering_front = 5.0;  ///< normalised cornering stiffness [1/rad]
-  double cornering_rear = 4.92;  ///< [1/rad]
+  double cornering_front = 5.0;  ///< cornering stiffness over load, front [1/rad]
+  double cornering_rear = 4.92;  ///< cornering stiffness over load, rear [1/rad]
   double tire_shape = 0.0;       ///< C of the magic formula; 0: the original simulator's curve
   double friction_coupling =
-      0.0;  ///< 1 = friction ellipse (a real tyre), 0 = braking and cornering do not share force
+      0.0;  ///< 1: friction ellipse (a real tyre), 0: braking and cornering share no force
   double load_constant = 12.22;    ///< normal acceleration at rest [m/s²]
   double load_per_speed = 0.0923;  ///< growth of the load with speed (downforce) [1/s]
   double load_quadratic = 0.0;     ///< growth of the load with squared speed [1/m]
   double load_balance = 0.0;       ///< share of the front axle in that growth, less its share at rest
   double steer_helper =
-      0.768;  ///< share of each yaw change by which the car turns its velocity along; 0 = a real car
+      0.768;                ///< share of each yaw change by which the velocity turns along; 0 = a real car
   double helper_gap = 0.0;  ///< gap of the helper when the heading passes +y [s] (actuator.hpp)
 
   // Longitudinal: a = drive_acceleration · throttle − drag_linear · v − drag_quadratic · v² for throttle >=
   // 0, and − brake_acceleration · |throttle| − drag for throttle < 0 (reverse_acceleration below
   // reverse_speed). Stated for v >= 0.
   double drive_acceleration = 5.43;  ///< at full throttle and rest [m/s²]
-  double drive_power_per_mass =
-      std::numeric_limits<double>::infinity();  ///< cap of drive acceleration · v [W/kg]
-  double drag_constant = 0.0;                   ///< rolling resistance, motor and gears [m/s²]
-  double drag_driven = 0.0;                     ///< part of it that acts on the driven wheels alone [m/s²]
-  double drag_linear = 0.104;                   ///< [1/s]
-  double drag_quadratic = 0.0;                  ///< [1/m]
-  double brake_acceleration = 218.0;  ///< per unit of negative throttle, before the wheels lock [m/s²]
-  double brake_throttle_limit =
-      0.04;  ///< largest useful negative throttle: beyond it the wheels lock (1 = proportional)
-  double valid_speed = std::numeric_limits<double>::infinity();  ///< up to which these parameters hold:
-                                                                 ///< planned no faster [m/s]
+  /// Largest product of drive acceleration and v [W/kg].
+  double drive_power_per_mass = std::numeric_limits<double>::infinity();
+  double drag_constant = 0.0;         ///< deceleration by rolling resistance, motor and gears [m/s²]
+  double drag_driven = 0.0;           ///< part of drag_constant that acts on the driven wheels alone [m/s²]
+  double drag_linear = 0.104;         ///< deceleration over speed [1/s]
+  double drag_quadratic = 0.0;        ///< deceleration over squared speed [1/m]
+  double brake_acceleration = 218.0;  ///< deceleration over negative throttle, before the wheels lock [m/s²]
+  double brake_throttle_limit = 0.04;  ///< negative throttle beyond which the wheels lock; 1: they never do
+  /// Speed up to which these parameters hold; plans are no faster [m/s].
+  double valid_speed = std::numeric_limits<double>::infinity();
 
   // The reverse gear.
-  double reverse_speed = 2.235;  ///< below it a negative throttle is the reverse gear [m/s]; 0: it never is
-  double reverse_acceleration = 1.63;  ///< per unit of negative throttle then [m/s²]
+  double reverse_speed =
+      2.235;  ///< speed below which a negative throttle is the reverse gear [m/s]; 0: never
+  double reverse_acceleration = 1.63;  ///< backward acceleration over negative throttle in reverse [m/s²]
 
   // Driving off again.
-  double brake_latch_speed =
-      2.235;  ///< brakes applied when the car falls to this speed stay applied, whatever
-              ///< the pedal does, until they are released [m/s]; 0: they follow the pedal
-  double brake_release_throttle = -0.01;  ///< a throttle that releases them, sent for one control period at
-                                          ///< or below brake_latch_speed
+  /// Speed at which applied brakes latch: they stay applied, whatever the pedal does, until they are released
+  /// [m/s]; 0: brakes follow the pedal.
+  double brake_latch_speed = 2.235;
+  /// Throttle that releases latched brakes when it is sent for one control period at or below
+  /// brake_latch_speed.
+  double brake_release_throttle = -0.01;
 
   /// Normal acceleration carried by the tyres at speed v [m/s²].
   [[nodiscard]] double load(double v) const noexcept {
@@ -151,27 +154,27 @@ struct VehicleParams : CarBody {
 /// the first one outside its range.
 [[nodiscard]] Result<void> validate(const VehicleParams& params);
 
-/// Longitudinal acceleration [m/s²] of the car at speed v [m/s] for a throttle in [-1, 1] (the law above,
-/// without lag).
+/// Longitudinal acceleration [m/s²] of the car at speed v [m/s] for a throttle in [-1, 1], by the law in
+/// VehicleParams, without lag.
 [[nodiscard]] double longitudinal_acceleration(const VehicleParams& params, double throttle,
                                                double v) noexcept;
 
-/// Lowest useful throttle at speed v [m/s]: -brake_throttle_limit, or -1 where it is the reverse gear.
+/// Lowest useful throttle at speed v [m/s]: -brake_throttle_limit, or -1 in the reverse gear.
 [[nodiscard]] double lowest_throttle(const VehicleParams& params, double v) noexcept;
 
-/// The throttle in [lowest_throttle, 1] whose acceleration at speed v [m/s] is nearest to
-/// `acceleration` [m/s²].
+/// Throttle in [lowest_throttle, 1] whose acceleration at speed v [m/s] is nearest to `acceleration` [m/s²].
 [[nodiscard]] double throttle_for(const VehicleParams& params, double acceleration, double v) noexcept;
 
-/// The throttle, never positive, that brakes with `acceleration` [m/s²] at speed v [m/s] and brings the car
-/// to rest without rolling back: the last of it more and more gently, within kRestTime.
+/// Throttle, never positive, that brakes with `acceleration` [m/s²] at speed v [m/s] and brings the car to
+/// rest without rolling back. The deceleration is at most v / kRestTime, so that braking ends gently.
 [[nodiscard]] double throttle_to_rest(const VehicleParams& params, double acceleration, double v) noexcept;
-inline constexpr double kRestTime = 0.4;  ///< [s]
+inline constexpr double kRestTime = 0.4;  ///< time constant of the end of braking, in full size [s]; chosen
 
-/// Models of the shipped plants, fitted to them by `chicane_plant_report` (docs/model.md). The
-/// original simulator's car: the defaults above, and the gap of its helper.
+/// Model of the plant `udacity`, the original simulator's car: the defaults of VehicleParams, and the gap of
+/// its helper. Fitted to the plant by `chicane_plant_report` (docs/model.md).
 [[nodiscard]] VehicleParams udacity_params();
-/// An ordinary car: 1300 kg, about 1.2 g, proportional brakes, 90°/s steering.
+/// Model of the plant `road-car`, an ordinary car: 1300 kg, about 1.2 g, proportional brakes, 90°/s steering.
+/// Derived from the plant's parameters (docs/model.md, eq. 23–27).
 [[nodiscard]] VehicleParams road_car_params();
 
 /// The same car on another surface: its tyres give `share` of their forces at the same slip. Pre: share > 0.
@@ -182,10 +185,10 @@ inline constexpr double kRestTime = 0.4;  ///< [s]
   return car;
 }
 
-/// A model car and the same car in full size (docs/tracks.md, "Model cars"). With lengths by λ = 1 / scale
-/// and times by √λ, speeds are by √λ, accelerations stay, and with forces by λ³ so do friction and gravity:
-/// the two move alike. What controllers and guard hold in metres and seconds is stated for the car in full
-/// size; a model car is seen by them as that. Factors are exactly 1 where the scale is.
+/// Conversion of a model car to the same car in full size (docs/tracks.md, "Model cars"). Lengths grow by
+/// λ = 1 / scale, times and speeds by √λ, forces by λ³; accelerations, friction and gravity stay, so that
+/// both cars move alike. Controllers and guard drive a model car as the car in full size, for which their
+/// settings in metres and seconds are stated. For a scale of 1 all factors are exactly 1.
 class Similarity {
  public:
   explicit Similarity(double scale = 1.0) noexcept : length_{1.0 / scale}, time_{std::sqrt(1.0 / scale)} {}
@@ -193,8 +196,8 @@ class Similarity {
 
   [[nodiscard]] bool is_identity() const noexcept { return length_ == 1.0; }
   [[nodiscard]] double length() const noexcept { return length_; }  ///< full size over model size
-  [[nodiscard]] double time() const noexcept { return time_; }
-  [[nodiscard]] double speed() const noexcept { return time_; }
+  [[nodiscard]] double time() const noexcept { return time_; }      ///< full size over model size, of times
+  [[nodiscard]] double speed() const noexcept { return time_; }     ///< full size over model size, of speeds
 
   /// The car in full size; its own scale is 1. Ratios, angles and accelerations stay.
   [[nodiscard]] VehicleParams full_size(VehicleParams car) const noexcept {
@@ -232,8 +235,8 @@ class Similarity {
   }
 
  private:
-  double length_;
-  double time_;
+  double length_;  ///< length()
+  double time_;    ///< time()
 };
 
 }  // namespace chicane::model

@@ -9,10 +9,15 @@
 #include "chicane/base/math.hpp"
 #include "chicane/model/vehicle.hpp"
 
-namespace chicane::model {
+/// Tyre curves, and the forces of four wheels on a plane. Plants, limits, stops and fits share where the
+/// wheels are, how their forces add up, and how anti-lock and traction control reduce torque. Loads and slips
+/// differ: a plant integrates slips, a limit has them as variables, a stop finds them for a force, a fit for
+/// a torque.
+///
+/// Templates over the scalar: double, or a jet, which gives slopes. Tyre curves are odd functions of slip.
+/// Equations and sources: docs/model.md, eq. 10–12. No allocation, no failure.
 
-/// Normalised tyre curves: force over load from slip. Odd functions of slip, templates over the scalar, so
-/// that a jet gives their slope. Equations and sources: docs/model.md, eq. 10–12.
+namespace chicane::model {
 
 /// Magic formula y = D sin(C atan(B x − E (B x − atan(B x)))), slope B C D at 0 (eq. 10; Pacejka 2012,
 /// §4.3.1).
@@ -79,11 +84,6 @@ struct FrictionCurve {
   }
 };
 
-/// Four wheels of a car on a plane, for plants, limits, stops and fits: they share where the wheels are, how
-/// their forces add up and how controllers of the wheels take torque away. Loads and slips differ: a plant
-/// integrates slips, a limit has them as variables, a stop finds them for a force, a fit for a torque.
-/// Templates over the scalar: double, or a jet. No allocation, no failure.
-
 /// A vector in a plane.
 template <class T>
 struct Planar {
@@ -96,7 +96,7 @@ template <class T>
 [[nodiscard]] Planar<T> in_turned_axes(const Planar<T>& v, const T& cosine, const T& sine) {
   return {cosine * v.x + sine * v.y, cosine * v.y - sine * v.x};
 }
-/// The other way round.
+/// `v` in the original axes, given in axes that are turned by an angle with this cosine and sine.
 template <class T>
 [[nodiscard]] Planar<T> from_turned_axes(const Planar<T>& v, const T& cosine, const T& sine) {
   return {cosine * v.x - sine * v.y, sine * v.x + cosine * v.y};
@@ -129,30 +129,32 @@ template <class T, class ForceOf>
   return sum;
 }
 
-/// Functions with a corner as they are.
+/// Functions with a corner, exact.
 struct Sharp {
   /// max(x, 0).
   [[nodiscard]] static double positive(double x, double /*width*/) noexcept { return std::max(x, 0.0); }
   /// x in [0, 1].
   [[nodiscard]] static double share(double x, double /*width*/) noexcept { return std::clamp(x, 0.0, 1.0); }
 };
-/// The same, smooth within about `width`: for searches that use derivatives.
+/// Functions with a corner that is rounded within about `width`, for searches that use derivatives.
 struct Rounded {
+  /// About max(x, 0).
   template <class T>
   [[nodiscard]] static T positive(const T& x, double width) {
     return 0.5 * (x + sqrt(x * x + width * width));
   }
+  /// About x in [0, 1].
   template <class T>
   [[nodiscard]] static T share(const T& x, double width) {
     return positive(x, width) - positive(T(x - 1.0), width);
   }
 };
 
-/// Share of a brake that anti-lock passes, or of a drive that traction control passes: 1 up to slip `start`,
-/// 0 from `end` on, for the slip in the direction of the force.
+/// Share of a brake torque that anti-lock permits, or of a drive torque that traction control permits: 1 up
+/// to slip `start`, 0 from `end` on, for the slip in the direction of the force.
 template <class Corners, class T>
 [[nodiscard]] T torque_share(const T& slip, double start, double end) {
-  constexpr double kCorner = 0.02;  // rounding of both corners
+  constexpr double kCorner = 0.02;  // width of the rounding of both corners; chosen
   return Corners::share(T((end - slip) / (end - start)), kCorner);
 }
 

@@ -28,16 +28,20 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Milliseconds = std::chrono::milliseconds;
 
-constexpr std::size_t kMaxMessage = 1U << 20U;  // a reply with hundreds of points is 20 kB
-constexpr std::size_t kMaxHeader = 1U << 14U;   // [byte]
+constexpr std::size_t kMaxMessage = 1U << 20U;  // [byte] chosen: a reply with hundreds of points has 20 kB
+constexpr std::size_t kMaxHeader = 1U << 14U;   // [byte] chosen: limit of an upgrade's answer
+constexpr std::size_t kMaxReason = 200;         // [byte] chosen: shown of a refusal's text, two lines
+constexpr Milliseconds kSendTimeout{5000};      // chosen: a server that reads nothing for so long is lost
+constexpr Milliseconds kPongTimeout{1000};      // chosen: short, because receive() waits for it
+constexpr Milliseconds kCloseTimeout{100};      // chosen: at most this delay at a program's end
 constexpr std::string_view kKeyGuid = "258EAFA5-E914-47DA-95CA-C5AB0DC85B11";  // RFC 6455 §1.3
 
-/// Frame types of RFC 6455 §5.2.
+/// Types of frames (RFC 6455 §5.2).
 enum Opcode : unsigned char { kContinuation = 0, kText = 1, kBinary = 2, kClose = 8, kPing = 9, kPong = 10 };
 
 tl::unexpected<Error> io_error(std::string message) { return fail(ErrorCode::kIo, std::move(message)); }
 
-/// Answer that the server must give to `key` (RFC 6455 §4.2.2).
+/// Sec-WebSocket-Accept by which a server answers `key` (RFC 6455 §4.2.2).
 std::string accept_of(const std::string& key) {
   boost::uuids::detail::sha1 hash;
   hash.process_bytes(key.data(), key.size());
@@ -50,13 +54,7 @@ std::string accept_of(const std::string& key) {
   return base64(bytes);
 }
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return result;
-}
-
-/// Value of a header line, without regard to the case of its name; empty when absent.
+/// Value of the header `name`, in any case, from the head of an answer; empty when absent.
 std::string_view header(std::string_view head, std::string_view name) {
   for (std::size_t line = head.find("\r\n"); line != std::string_view::npos;
        line = head.find("\r\n", line + 2)) {
@@ -69,8 +67,8 @@ std::string_view header(std::string_view head, std::string_view name) {
   return {};
 }
 
-/// A connected, non-blocking TCP socket. Each call returns by its `end`, but for the name look-up in
-/// connect().
+/// A connected, non-blocking TCP socket. Each call returns by its time `end`, except that the name look-up in
+/// connect() takes the time that the system gives it.
 class Socket {
  public:
   Socket() = default;
@@ -86,6 +84,7 @@ class Socket {
     if (handle_ >= 0) ::close(handle_);
   }
 
+  /// Connects to the first address of the host that answers.
   static Result<Socket> connect(const Url& url, Clock::time_point end) {
     addrinfo hints{};
     hints.ai_socktype = SOCK_STREAM;
@@ -104,6 +103,7 @@ class Socket {
     return io_error(fmt::format("{}:{}: {}", url.host, url.port, why));
   }
 
+  /// Sends all bytes.
   Result<void> send(std::string_view bytes, Clock::time_point end) {
     while (!bytes.empty()) {
       const ssize_t count = ::send(handle_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
@@ -135,6 +135,7 @@ class Socket {
   }
 
  private:
+  /// Connects to one address. The reason of a failure, empty after success.
   std::string connect_to(const addrinfo& address, Clock::time_point end) {
     if (handle_ < 0) return std::strerror(errno);
     const int on = 1;
@@ -148,27 +149,30 @@ class Socket {
     return error == 0 ? std::string{} : std::strerror(error);
   }
 
+  /// Waits until the socket has one of the `events` of poll(2); false if none came until `end`.
   [[nodiscard]] bool wait(short events, Clock::time_point end) const {
+    constexpr std::int64_t kLongest = 3'600'000;  // [ms] chosen: an hour, far within an int
     const auto left = std::chrono::ceil<Milliseconds>(end - Clock::now()).count();
     if (left <= 0) return false;
     pollfd entry{handle_, events, 0};
-    const int ready = ::poll(&entry, 1, static_cast<int>(std::min<std::int64_t>(left, 3'600'000)));
+    const int ready = ::poll(&entry, 1, static_cast<int>(std::min<std::int64_t>(left, kLongest)));
     return ready < 0 && errno == EINTR ? wait(events, end) : ready > 0;
   }
 
-  int handle_ = -1;
+  int handle_ = -1;  ///< descriptor; -1: none
 };
 
+/// Client over a Socket: the upgrade, and frames of RFC 6455.
 class WebSocketClient final : public Client {
  public:
   explicit WebSocketClient(Socket socket) : socket_{std::move(socket)} {}
 
   ~WebSocketClient() override {
-    if (is_open_)
-      static_cast<void>(send_frame(kClose, std::string("\x03\xe8", 2),
-                                   Milliseconds{100}));  // normal closure, RFC 6455 7.4.1
+    constexpr std::string_view kNormalClosure{"\x03\xe8", 2};  // code 1000 of RFC 6455 §7.4.1
+    if (is_open_) static_cast<void>(send_frame(kClose, kNormalClosure, kCloseTimeout));
   }
 
+  /// Sends the upgrade request and checks the answer (RFC 6455 §4.1).
   Result<void> shake_hands(const Url& url, Clock::time_point end) {
     std::string nonce(16, '\0');
     for (char& byte : nonce) byte = static_cast<char>(random_());
@@ -191,22 +195,20 @@ class WebSocketClient final : public Client {
     return check(head, key);
   }
 
-  Result<void> send_text(const std::string& text) override {
-    return send_frame(kText, text, Milliseconds{5000});
-  }
+  Result<void> send_text(const std::string& text) override { return send_frame(kText, text, kSendTimeout); }
 
   Result<std::optional<std::string>> receive(Milliseconds timeout) override {
     const Clock::time_point end = Clock::now() + timeout;
     for (;;) {
       if (!is_open_) return io_error("the connection has been closed");
-      Result<bool> message = take_frame();
-      if (!message) {
+      const Result<Taken> taken = take_frame();
+      if (!taken) {
         is_open_ = false;
-        return fail(message.error());
+        return fail(taken.error());
       }
-      if (*message) return std::exchange(message_, {});
-      if (has_frame_) continue;
-      Result<bool> received = socket_.receive(input_, end);
+      if (*taken == Taken::kMessage) return std::exchange(message_, {});
+      if (*taken == Taken::kFrame) continue;
+      const Result<bool> received = socket_.receive(input_, end);
       if (!received) {
         is_open_ = false;
         return fail(received.error());
@@ -216,13 +218,17 @@ class WebSocketClient final : public Client {
   }
 
  private:
+  /// Outcome of take_frame(): no whole frame in input_, a frame, or the frame that ends a message.
+  enum class Taken { kNothing, kFrame, kMessage };
+
+  /// Opens the connection if `head` is the right answer to an upgrade with `key`.
   Result<void> check(const std::string& head, const std::string& key) {
     const std::string status = head.substr(0, head.find("\r\n"));
     if (!status.starts_with("HTTP/1.1 101")) {
-      const std::size_t words = input_.find_last_not_of("\r\n");
+      const std::size_t last = input_.find_last_not_of("\r\n");
       return io_error(fmt::format(
           "the server refused: {}{}", status,
-          words == std::string::npos ? "" : ": " + input_.substr(0, std::min(words + 1, std::size_t{200}))));
+          last == std::string::npos ? "" : ": " + input_.substr(0, std::min(last + 1, kMaxReason))));
     }
     if (lower(header(head, "Upgrade")) != "websocket")
       return io_error("the server's 101 has no 'Upgrade: websocket'");
@@ -234,6 +240,7 @@ class WebSocketClient final : public Client {
     return {};
   }
 
+  /// Sends one frame, masked by random bytes (RFC 6455 §5.2).
   Result<void> send_frame(Opcode opcode, std::string_view payload, Milliseconds timeout) {
     if (!is_open_) return io_error("the connection has been closed");
     std::string frame;
@@ -255,44 +262,43 @@ class WebSocketClient final : public Client {
     return sent;
   }
 
-  /// Takes one frame from input_ when it is there whole (then has_frame_); true when it completes message_.
-  Result<bool> take_frame() {
-    has_frame_ = false;
+  /// Takes one frame from input_ if all its bytes have arrived: adds data to message_, answers a ping.
+  Result<Taken> take_frame() {
     const auto byte = [this](std::size_t i) { return static_cast<unsigned char>(input_[i]); };
-    if (input_.size() < 2) return false;
+    if (input_.size() < 2) return Taken::kNothing;
     const bool is_last = (byte(0) & 0x80U) != 0;
     const unsigned opcode = byte(0) & 0x0fU;
     if ((byte(0) & 0x70U) != 0) return io_error("the server sent a frame with reserved bits");
     if ((byte(1) & 0x80U) != 0) return io_error("the server sent a masked frame");
     std::uint64_t size = byte(1) & 0x7fU;
     const std::size_t extra = size == 126 ? 2 : size == 127 ? 8 : 0;
-    if (input_.size() < 2 + extra) return false;
+    if (input_.size() < 2 + extra) return Taken::kNothing;
     if (extra > 0) size = 0;
     for (std::size_t i = 0; i < extra; ++i) size = (size << 8U) | byte(2 + i);
     if (size > kMaxMessage || message_.size() + size > kMaxMessage)
       return io_error("the server sent more than 1 MiB at once");
-    if (input_.size() < 2 + extra + size) return false;
+    if (input_.size() < 2 + extra + size) return Taken::kNothing;
     const std::string payload = input_.substr(2 + extra, static_cast<std::size_t>(size));
     input_.erase(0, 2 + extra + static_cast<std::size_t>(size));
-    has_frame_ = true;
     switch (opcode) {
       case kPing:
-        static_cast<void>(send_frame(kPong, payload, Milliseconds{1000}));
-        return false;
+        static_cast<void>(send_frame(kPong, payload, kPongTimeout));
+        return Taken::kFrame;
       case kPong:
-        return false;
+        return Taken::kFrame;
       case kClose:
         return io_error(closing_words(payload));
       case kContinuation:
       case kText:
       case kBinary:
         message_ += payload;
-        return is_last;
+        return is_last ? Taken::kMessage : Taken::kFrame;
       default:
         return io_error(fmt::format("the server sent a frame of unknown type {}", opcode));
     }
   }
 
+  /// Sentence with the code and reason of a close frame.
   static std::string closing_words(const std::string& payload) {
     if (payload.size() < 2) return "the server closed the connection";
     const int code = static_cast<unsigned char>(payload[0]) * 256 + static_cast<unsigned char>(payload[1]);
@@ -300,10 +306,9 @@ class WebSocketClient final : public Client {
   }
 
   Socket socket_;
-  std::string input_;
-  std::string message_;
+  std::string input_;    ///< received bytes that are not part of a taken frame
+  std::string message_;  ///< data of the frames of a message that has not ended
   bool is_open_ = false;
-  bool has_frame_ = false;
   std::random_device random_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Answers to HTTP requests: parts of files, security headers, and the token of visitors.
+// Answers to HTTP requests: ranges of contents, ETags, security headers, and the token of visitors.
 #include "chicane/net/http_response.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@
 namespace chicane::net {
 namespace {
 
-constexpr std::uint64_t kPiece = 32UL * 1024UL;  // [byte] sent at a time
+constexpr std::uint64_t kPiece = 32UL * 1024UL;  // [byte] sent at a time; chosen: memory of a slow connection
 constexpr std::string_view kNotModified = "304 Not Modified";
 constexpr std::string_view kSecurityHeaders =
     "Content-Security-Policy: default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self' "
@@ -28,8 +28,8 @@ constexpr std::string_view kSecurityHeaders =
     "Cross-Origin-Opener-Policy: same-origin\r\n"
     "Cross-Origin-Resource-Policy: same-origin\r\n";
 
-/// Policy for WebSockets of the same host, which 'self' of some browsers leaves out; empty for IPv6
-/// addresses, which content policies cannot name.
+/// Sources of a content policy for WebSockets of `host`, which 'self' of some browsers leaves out. Empty for
+/// IPv6 addresses, which content policies cannot name.
 std::string sockets_of(std::string_view host) {
   constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-:";
   if (host.empty() || host.find_first_not_of(kPlain) != std::string_view::npos) return "";
@@ -72,20 +72,18 @@ Body Body::of_view(std::string_view bytes) {
 }
 
 Result<Body> Body::open(const std::string& file) {
-  struct stat what {};
+  struct stat status {};
   Body body;
   body.file_.open(file, std::ios::binary);
-  if (!body.file_ || ::stat(file.c_str(), &what) != 0 || !S_ISREG(what.st_mode))
+  if (!body.file_ || ::stat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode))
     return fail(ErrorCode::kIo, file + ": cannot be read");
-  body.size_ = static_cast<std::uint64_t>(what.st_size);
-  body.file_tag_ = fmt::format("\"{:x}-{:x}-{:x}\"", what.st_size, what.st_mtim.tv_sec, what.st_mtim.tv_nsec);
+  body.size_ = static_cast<std::uint64_t>(status.st_size);
+  body.file_tag_ =
+      fmt::format("\"{:x}-{:x}-{:x}\"", status.st_size, status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
   return body;
 }
 
-std::string Body::tag() const {
-  if (!file_tag_.empty()) return file_tag_;
-  return tag_of(view_);
-}
+std::string Body::tag() const { return file_tag_.empty() ? tag_of(view_) : file_tag_; }
 
 void Body::restrict_to(ByteRange range) {
   at_ += range.first;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Answers of a server to HTTP requests: contents and files by range, pages of the dashboard, tokens.
 #pragma once
 
 #include <cstddef>
@@ -18,10 +19,10 @@ namespace chicane::net {
 
 /// Answer to a GET of one path: bytes, or a file on disk.
 struct Content {
-  std::string content_type{};
+  std::string content_type{};  ///< media type, like "text/plain"
   std::string bytes{};
-  std::shared_ptr<const std::string> shared{};  ///< instead of `bytes`, for what many ask for
-  std::string file{};                           ///< if not empty: content is this file's at each answer
+  std::shared_ptr<const std::string> shared{};  ///< if not null: used in place of `bytes`, without a copy
+  std::string file{};     ///< if not empty: path of a file, which is read at each answer
   std::string save_as{};  ///< if not empty: browsers save under this name; no quotes, no line ends
 };
 
@@ -31,15 +32,15 @@ struct ByteRange {
   std::uint64_t count = 0;
 };
 
-/// Range that a Range header asks for out of `size` bytes: "bytes=0-99", "bytes=100-" or "bytes=-50" (RFC
-/// 9110 §14.1.2), cut at the end. None for a form that we do not serve in parts (another unit, several
-/// ranges, no range): then the whole is sent. A range without a single byte in it has count 0.
+/// Range that a Range header names out of `size` bytes: "bytes=0-99", "bytes=100-" or "bytes=-50" (RFC 9110
+/// §14.1.2), cut at the end. None for other forms (another unit, several ranges, no range): the whole content
+/// is the answer to them. A range that lies beyond the content has count 0.
 [[nodiscard]] std::optional<ByteRange> parse_range(std::string_view header, std::uint64_t size);
 
-/// An ETag that changes with the content.
+/// ETag of a content: a hash in quotes, which changes with the content.
 [[nodiscard]] std::string tag_of(std::string_view content);
 
-/// Content on its way to a client, piece by piece: memory is one piece.
+/// Content of an answer, read piece by piece: of a file one piece at a time is in memory.
 class Body {
  public:
   Body() = default;
@@ -48,60 +49,65 @@ class Body {
       : owned_{std::move(bytes)}, view_{*owned_}, size_{owned_->size()} {}
   /// Body of bytes that live as long as the program.
   static Body of_view(std::string_view bytes);
-  /// Body from a file. kIo if it cannot be read.
+  /// Body from a file. Fails with kIo if the file cannot be read.
   [[nodiscard]] static Result<Body> open(const std::string& file);
 
+  /// Number of bytes left.
   [[nodiscard]] std::uint64_t size() const { return size_; }
-  /// Tag of the whole content, before restrict_to().
+  /// ETag of the whole content. Before restrict_to() and next().
   [[nodiscard]] std::string tag() const;
+  /// Leaves `range` of the whole content. Before next().
   void restrict_to(ByteRange range);
-  /// Takes the next at most 32 KiB; false when nothing is left, or when a file has become shorter than it
-  /// was: then is_short().
+  /// Takes the next piece of at most 32 KiB; false when nothing is left or is_short().
   [[nodiscard]] bool next(std::string& piece);
+  /// After next() returned false: whether bytes are missing, as the file has become shorter since open().
   [[nodiscard]] bool is_short() const { return size_ > 0; }
 
  private:
-  std::shared_ptr<const std::string> owned_{};
-  std::string_view view_{};  ///< view of owned_, or of the program's bytes
+  std::shared_ptr<const std::string> owned_{};  ///< null for views and files
+  std::string_view view_{};                     ///< bytes of owned_ or of of_view(); empty for files
   std::ifstream file_{};
-  std::string file_tag_{};
+  std::string file_tag_{};  ///< ETag of the file: its size and time of change; empty: tag_of(view_)
   std::uint64_t at_ = 0;    ///< position of the next byte
   std::uint64_t size_ = 0;  ///< bytes left
 };
 
-/// A request, as far as an answer depends on it. Empty where a header is absent.
+/// A request, as far as an answer depends on it. A text is empty where its header is absent.
 struct HttpRequest {
-  bool is_head = false;
-  bool keep_alive = false;
-  bool accepts_gzip = false;
-  std::string_view range{};
-  std::string_view if_range{};
-  std::string_view if_none_match{};
+  bool is_head = false;              ///< HEAD: the head of the answer alone
+  bool keep_alive = false;           ///< the connection stays open after the answer
+  bool accepts_gzip = false;         ///< Accept-Encoding names gzip
+  std::string_view range{};          ///< Range: wanted part
+  std::string_view if_range{};       ///< If-Range: ETag for which the part is wanted
+  std::string_view if_none_match{};  ///< If-None-Match: ETag of the content that the client has
 };
 
-/// One answer: a head in HTTP/1.1 with our security headers, and what follows it.
+/// One answer in HTTP/1.1: a status, header fields with the security headers of this server, and a body.
 class HttpResponse {
  public:
-  /// Words for a person; `status` as in "404 Not Found".
+  /// Answer with a sentence for a person; `status` as in "404 Not Found".
   [[nodiscard]] static HttpResponse in_words(std::string_view status, std::string words);
-  /// Sends a browser on to another page of ours, with a cookie.
+  /// Redirects a browser to another page of this server (303), with a cookie.
   [[nodiscard]] static HttpResponse see_other(std::string_view location, std::string_view cookie);
-  /// A content, whole, by range (206, 416), or not again (304); 404 when its file cannot be read.
+  /// Answer with a content: the whole (200), a range (206, 416), or nothing if the client has it (304); 404
+  /// when its file cannot be read.
   [[nodiscard]] static HttpResponse of(Content content, const HttpRequest& request);
-  /// Bytes that live as long as the program, with the ETag that tag_of() gave them; 406 when they are
-  /// compressed and the request does not accept gzip.
+  /// Answer with bytes that live as long as the program; `tag` is tag_of() them. 406 when they are compressed
+  /// and the request does not accept gzip.
   [[nodiscard]] static HttpResponse of_asset(std::string_view bytes, std::string_view content_type,
                                              bool is_gzip, std::string_view tag, const HttpRequest& request);
 
+  /// Adds a header field.
   void add(std::string_view name, std::string_view value);
-  /// Head of the answer. Pages may open sockets to the `host` that the request named, and to no other.
+  /// Text of the answer up to its body. The policy in it lets pages open WebSockets to `host`, the Host
+  /// header of the request, and to no other host.
   [[nodiscard]] std::string head(const HttpRequest& request, std::string_view host = {}) const;
   [[nodiscard]] Body& body() { return body_; }
 
  private:
   explicit HttpResponse(std::string_view status) : status_{status} {}
-  std::string status_;
-  std::vector<std::pair<std::string, std::string>> fields_{};
+  std::string status_;                                         ///< "200 OK"
+  std::vector<std::pair<std::string, std::string>> fields_{};  ///< names and values of header fields
   Body body_{};
 };
 
@@ -113,13 +119,13 @@ struct Asset {
   bool gzip = false;
 };
 
-/// Contents for GET: made by the program, then assets.
+/// Contents for GET: those of the program (OnGet) first, else assets.
 class Site {
  public:
   using OnGet = std::function<std::optional<Content>(std::string_view path)>;
   Site() = default;
   Site(std::vector<Asset> assets, OnGet on_get);
-  /// `target` is path and query; 404 in words where there is nothing.
+  /// Answer to a GET of `target`, path and query; 404 where there is neither content nor asset.
   [[nodiscard]] HttpResponse answer(std::string_view target, const HttpRequest& asked) const;
 
  private:
@@ -128,11 +134,12 @@ class Site {
   OnGet on_get_;
 };
 
-/// A secret that cannot be guessed: 192 random bits of the system's, as 32 letters, digits, '-' and '_'. kIo
-/// where the system has none to give.
+/// Secret that cannot be guessed: 192 random bits of the system as 32 letters, digits, '-' and '_'. Fails
+/// with kIo if the system gives no random bits.
 [[nodiscard]] Result<std::string> make_token();
 
-/// Whether `given` is `token`, in a time that reveals nothing but the length. Never for an empty token.
+/// Whether `given` is `token`, compared in a time that reveals nothing but the length. False for an empty
+/// token.
 [[nodiscard]] bool is_token(std::string_view given, std::string_view token) noexcept;
 
 }  // namespace chicane::net

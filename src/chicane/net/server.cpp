@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The only file that includes Boost.Beast.
+// HTTP and WebSocket server over Boost.Beast, which no other file includes: accepts connections, reads
+// requests, answers them or upgrades them to WebSockets, and writes the messages that wait for each.
 #include "chicane/net/server.hpp"
 
 #include <boost/asio/dispatch.hpp>
@@ -34,12 +35,15 @@ using Tcp = asio::ip::tcp;
 using ErrorCodeBoost = boost::system::error_code;
 std::string_view view(boost::string_view text) { return {text.data(), text.size()}; }
 boost::string_view view(std::string_view text) { return {text.data(), text.size()}; }
-constexpr int kSendBuffer = 32 * 1024;  // a reader that stalls holds this much kernel memory, not megabytes
+
+// Chosen, none of them is critical:
+constexpr int kSendBuffer = 32 * 1024;                  // [byte] of the kernel for a reader that stalls
 constexpr std::chrono::seconds kAnswerTimeout{30};      // limit for one piece of an answer on a slow line
 constexpr std::chrono::seconds kLingerTimeout{1};       // time for the client to read a refusal
-constexpr std::chrono::milliseconds kAcceptPause{100};  // when descriptors are used up, for example
-constexpr std::size_t kKeptBuffer = 4096;               // buffer kept between two messages [byte]
+constexpr std::chrono::milliseconds kAcceptPause{100};  // after a failure, as when descriptors are used up
+constexpr std::size_t kKeptBuffer = 4096;               // [byte] buffer kept between two messages
 constexpr std::size_t kMostReserved = 8;                // connections that viewers leave to others
+constexpr std::size_t kLongestReason = 120;             // [byte] of a close frame; RFC 6455 allows 123
 
 class WebSocket;
 class HttpConnection;
@@ -50,35 +54,38 @@ bool accepts_gzip(const http::request<http::empty_body>& request) {
   return http::ext_list{accepted}.exists("gzip") || http::ext_list{accepted}.exists("*");
 }
 
-/// State of the server that connections share. Runs on one thread; `ticket` counts open sockets.
+/// State of the server that its connections share. Used on the network thread alone.
 struct Core {
   ServerOptions options;
   ServerHandlers handlers;
   Site site{};
-  std::shared_ptr<int> ticket = std::make_shared<int>(0);
+  std::shared_ptr<int> ticket = std::make_shared<int>(0);  ///< copied by each connection: counts open sockets
   Doorkeeper door{};
   WaitingBytes waiting{};
-  std::list<HttpConnection*> visitors{};  // connections without an upgrade, longest silent first
-  std::unordered_map<ConnectionId, std::shared_ptr<WebSocket>> connections;
+  std::list<HttpConnection*> visitors{};  ///< connections without an upgrade, longest silent first
+  std::unordered_map<ConnectionId, std::shared_ptr<WebSocket>> connections;  ///< upgraded connections
   ConnectionId next_id = 1;
   bool is_stopping = false;
-  asio::io_context io{1};  // last: its handlers use the others when it ends
+  asio::io_context io{1};  ///< last member: its handlers use the others when it ends
 
+  /// Number of open sockets.
   [[nodiscard]] std::size_t open() const { return static_cast<std::size_t>(ticket.use_count()) - 1; }
+  /// Whether the connections left are reserved for others than viewers.
   [[nodiscard]] bool is_crowded() const {
     return connections.size() + std::min(kMostReserved, options.max_connections / 8) >=
            options.max_connections;
   }
 };
 
-/// One upgraded connection. A read is pending from open to end, and its completion is the one place where it
-/// ends.
+/// One upgraded connection. A read is pending from open() to end(), and the connection ends only where that
+/// read completes with an error.
 class WebSocket : public std::enable_shared_from_this<WebSocket> {
  public:
   WebSocket(Core& core, Tcp::socket socket, int endpoint, ConnectionId id)
       : core_{core}, ticket_{core.ticket}, stream_{std::move(socket)}, endpoint_{endpoint}, id_{id} {}
   ~WebSocket() { queue_.drop_waiting(false); }
 
+  /// Answers the upgrade; open() follows.
   void start(const http::request<http::empty_body>& request, const std::string& subprotocol) {
     stream_.set_option(
         websocket::stream_base::timeout{core_.options.handshake_timeout, core_.options.idle_timeout, true});
@@ -97,22 +104,24 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
     });
   }
 
+  /// Queues a message, or ends the connection if too much waits for it.
   void send(Outgoing message) {
     if (is_closing_) return;
     const bool is_full = !queue_.add(std::move(message), is_writing_, core_.options.max_queue);
     const std::size_t all = core_.waiting.total();
-    const bool has_more_than_others = queue_.bytes() * core_.connections.size() >= all;
-    if (is_full || (all > core_.options.max_waiting && has_more_than_others))
+    const bool has_more_than_mean = queue_.bytes() * core_.connections.size() >= all;
+    if (is_full || (all > core_.options.max_waiting && has_more_than_mean))
       return abort("does not read what it is sent");
     if (!is_writing_) write();
   }
 
   [[nodiscard]] const SendQueue& queue() const { return queue_; }
 
+  /// Sends a close frame once the queue is written.
   void close(std::uint16_t code, std::string_view reason) {
     if (is_closing_) return;
     is_closing_ = true;
-    close_reason_ = {static_cast<websocket::close_code>(code), view(reason.substr(0, 120))};
+    close_reason_ = {static_cast<websocket::close_code>(code), view(reason.substr(0, kLongestReason))};
     if (why_.empty()) why_ = reason;
     if (!is_writing_) finish_closing();
   }
@@ -125,6 +134,7 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
     read();
   }
 
+  /// Reads messages until the connection ends.
   void read() {
     stream_.async_read(buffer_, [self = shared_from_this()](ErrorCodeBoost ec, std::size_t) {
       if (ec) return self->end(ec);
@@ -140,6 +150,7 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
     });
   }
 
+  /// Writes queued messages one after another, then the close frame if close() was called.
   void write() {
     is_writing_ = true;
     stream_.binary(queue_.front().binary);
@@ -165,15 +176,17 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
     beast::get_lowest_layer(stream_).close();
   }
 
+  /// Forgets the connection, whose read ended with `ec`, and calls on_close.
   void end(ErrorCodeBoost ec) {
     is_closing_ = true;
-    if (why_.empty()) why_ = words(ec);
+    if (why_.empty()) why_ = reason_of(ec);
     core_.connections.erase(id_);
     if (!core_.is_stopping) return core_.handlers.on_close(id_, endpoint_, why_);
     if (core_.connections.empty()) core_.io.stop();
   }
 
-  [[nodiscard]] std::string words(ErrorCodeBoost ec) const {
+  /// Reason for on_close of a read that ended with `ec`.
+  [[nodiscard]] std::string reason_of(ErrorCodeBoost ec) const {
     if (has_peer_closed_ || ec == websocket::error::closed)
       return fmt::format("closed by the peer ({})", stream_.reason().code);
     if (ec == websocket::error::message_too_big)
@@ -185,17 +198,17 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
   }
 
   Core& core_;
-  std::shared_ptr<int> ticket_;
-  websocket::stream<beast::tcp_stream, false> stream_;
-  beast::flat_buffer buffer_;
-  int endpoint_;
+  std::shared_ptr<int> ticket_;                         ///< copy of Core::ticket
+  websocket::stream<beast::tcp_stream, false> stream_;  ///< without compression
+  beast::flat_buffer buffer_;                           ///< message being read
+  int endpoint_;                                        ///< UpgradeAnswer::endpoint
   ConnectionId id_;
   SendQueue queue_{core_.waiting};
-  bool is_writing_ = false;
-  bool is_closing_ = false;
-  bool has_peer_closed_ = false;
-  websocket::close_reason close_reason_;
-  std::string why_;
+  bool is_writing_ = false;               ///< the front of queue_ is being written
+  bool is_closing_ = false;               ///< nothing more is queued or passed to on_message
+  bool has_peer_closed_ = false;          ///< a close frame has arrived
+  websocket::close_reason close_reason_;  ///< content of the close frame
+  std::string why_;                       ///< reason for on_close: the first one that arose
 };
 
 /// One connection before (or without) an upgrade.
@@ -215,12 +228,13 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   }
 
  private:
-  /// Somebody new needs the place.
+  /// Closes the connection, whose place a new one needs.
   void give_way() {
-    core_.visitors.splice(core_.visitors.end(), core_.visitors, place_);  // about to be closed
+    core_.visitors.splice(core_.visitors.end(), core_.visitors, place_);  // not to be chosen again
     stream_.close();
   }
 
+  /// Reads one request and answers it.
   void read() {
     core_.visitors.splice(core_.visitors.end(), core_.visitors, place_);
     parser_.emplace();
@@ -239,6 +253,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     });
   }
 
+  /// Upgrades, redirects, serves or refuses, as the access rules decide.
   void answer(const http::request<http::empty_body>& request) {
     host_ = view(request[http::field::host]);
     const Admission admission = core_.door.admit({.target = view(request.target()),
@@ -261,6 +276,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     turn_away(http::int_to_status(admission.status), admission.words);
   }
 
+  /// Asks the program about an upgrade, and hands the socket over to a WebSocket if it accepts.
   void upgrade(const http::request<http::empty_body>& request, const Admission& admission) {
     if (buffer_.size() > 0)
       return refuse(http::status::bad_request, "bytes sent before the upgrade was answered");
@@ -285,6 +301,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
         ->start(request, answer.subprotocol);
   }
 
+  /// Answers a GET or HEAD with a content of the site.
   void serve(const http::request<http::empty_body>& request) {
     const HttpRequest asked{.is_head = request.method() == http::verb::head,
                             .keep_alive = request.keep_alive(),
@@ -295,7 +312,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     reply(core_.site.answer(view(request.target()), asked), asked);
   }
 
-  /// Refuses a request for a reason that the operator can change and may want to know.
+  /// Refuses a request by a rule that the operator can change; reports it by on_refused.
   void turn_away(http::status status, std::string words) {
     ErrorCodeBoost ignored;
     const std::string peer = stream_.socket().remote_endpoint(ignored).address().to_string(ignored);
@@ -318,6 +335,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     write(asked.keep_alive);
   }
 
+  /// Writes the answer piece by piece, then reads the next request or ends.
   void write(bool keep_alive) {
     stream_.expires_after(kAnswerTimeout);
     asio::async_write(stream_, asio::buffer(piece_),
@@ -330,7 +348,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
                       });
   }
 
-  /// Half-closes and reads on until the peer has done the same, so that the refusal is not lost to a reset.
+  /// Half-closes and reads on until the peer has closed, too: a reset at once could discard the answer.
   void linger() {
     ErrorCodeBoost ignored;
     stream_.socket().shutdown(Tcp::socket::shutdown_send, ignored);
@@ -345,15 +363,16 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   }
 
   Core& core_;
-  std::shared_ptr<int> ticket_;
+  std::shared_ptr<int> ticket_;  ///< copy of Core::ticket
   beast::tcp_stream stream_;
+  /// Place of this connection in Core::visitors.
   std::list<HttpConnection*>::iterator place_ = core_.visitors.insert(core_.visitors.end(), this);
   beast::flat_buffer buffer_{core_.options.max_header + 2 * kKeptBuffer};
-  std::optional<http::request_parser<http::empty_body>> parser_;
-  std::array<char, 1024> rest_{};
-  std::string host_;   ///< host of the last request, once it was accepted
-  std::string piece_;  ///< part of the answer in writing
-  Body body_;          ///< rest of the answer
+  std::optional<http::request_parser<http::empty_body>> parser_;  ///< of one request
+  std::array<char, 1024> rest_{};                                 ///< bytes that linger() throws away
+  std::string host_;                                              ///< Host header of the last request
+  std::string piece_;                                             ///< part of the answer being written
+  Body body_;                                                     ///< rest of the answer
 };
 
 class BeastServer final : public Server {
@@ -371,6 +390,7 @@ class BeastServer final : public Server {
     core_.connections.clear();
   }
 
+  /// Checks the address, listens, and starts the network thread.
   Result<void> start() {
     ErrorCodeBoost ec;
     const auto address = asio::ip::make_address(core_.options.address, ec);
@@ -449,6 +469,8 @@ class BeastServer final : public Server {
     });
   }
 
+  /// Stops accepting, closes all WebSockets, and ends the network thread when they have closed or after the
+  /// time `goodbye`.
   void say_goodbye() {
     core_.is_stopping = true;
     ErrorCodeBoost ignored;

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: MIT
+// Messages that a controller and a car exchange as ROS 2 programs, and of which the topics of
+// ros_messages.hpp consist: standard messages, our own StopPlan, and the parameter services of nodes. Bytes
+// are CDR. Each message names its fields once, for both directions (detail/cdr_archive.hpp). Stamps are
+// nanoseconds since 1970.
 #pragma once
 
 #include <cmath>
@@ -15,10 +19,6 @@
 #include "chicane/protocol/foxglove_codec.hpp"
 #include "chicane/safety/stop_player.hpp"
 
-/// Messages that a controller and a car exchange as ROS 2 programs, and that the topics of ros_messages.hpp
-/// consist of. In CDR. Each message names its fields once, for both directions. Stamps are nanoseconds since
-/// 1970.
-
 namespace chicane::protocol {
 
 /// std_msgs/msg/Header.
@@ -34,8 +34,8 @@ struct OdometryMessage {
   std::string frame{};        ///< frame of the pose
   std::string child_frame{};  ///< frame of the motion
   model::Pose pose{};         ///< pose of the child frame
-  double vx = 0.0;            ///< along the child frame [m/s]
-  double vy = 0.0;            ///< across it, left positive [m/s]
+  double vx = 0.0;            ///< along the child frame's x axis [m/s]
+  double vy = 0.0;            ///< along the child frame's y axis, left positive [m/s]
   double yaw_rate = 0.0;      ///< [rad/s]
   static void fields(auto& archive, auto& message) {
     header_fields(archive, message);
@@ -65,7 +65,7 @@ struct DriveMessage {
   }
 };
 
-/// autoware_control_msgs/msg/Control, of the content of a DriveMessage.
+/// autoware_control_msgs/msg/Control, with the content of a DriveMessage.
 struct AutowareMessage {
   static constexpr std::string_view kType = "autoware_control_msgs/msg/Control";
   DriveMessage drive{};
@@ -82,14 +82,14 @@ struct AutowareMessage {
   }
 };
 
-/// sensor_msgs/msg/Imu, the part that a planar car has.
+/// sensor_msgs/msg/Imu, of which a planar car has these fields.
 struct ImuMessage {
   static constexpr std::string_view kType = "sensor_msgs/msg/Imu";
   std::int64_t stamp = 0;
   std::string frame{};
   double yaw_rate = 0.0;  ///< [rad/s]
-  double ax = 0.0;        ///< [m/s²]
-  double ay = 0.0;        ///< left positive [m/s²]
+  double ax = 0.0;        ///< forward acceleration [m/s²]
+  double ay = 0.0;        ///< lateral acceleration, left positive [m/s²]
   static void fields(auto& archive, auto& message) {
     header_fields(archive, message);
     archive.constant(0.0, 0.0, 0.0, 1.0, -1.0);  // the first covariance is -1: there is no orientation
@@ -103,7 +103,7 @@ struct ImuMessage {
 
 /// geometry_msgs/msg/PoseStamped.
 struct StampedPose {
-  static constexpr std::size_t kSmallest = 64;  ///< [byte]
+  static constexpr std::size_t kSmallest = 64;  ///< least size in a list [byte]
   std::int64_t stamp = 0;
   std::string frame{};
   model::Pose pose{};
@@ -161,7 +161,7 @@ struct ScanMessage {
   double scan_time = 0.0;        ///< time between scans [s]
   double range_min = 0.0;        ///< [m]
   double range_max = 0.0;        ///< [m]
-  std::vector<float> ranges{};   ///< [m]
+  std::vector<float> ranges{};   ///< range of each beam [m]
   static void fields(auto& archive, auto& message) {
     header_fields(archive, message);
     archive.template as<float>(message.angle_min);
@@ -177,7 +177,7 @@ struct ScanMessage {
 
 /// geometry_msgs/msg/TransformStamped, in the plane.
 struct TransformMessage {
-  static constexpr std::size_t kSmallest = 72;  ///< [byte]
+  static constexpr std::size_t kSmallest = 72;  ///< least size in a list [byte]
   std::int64_t stamp = 0;
   std::string frame{};
   std::string child_frame{};
@@ -213,7 +213,7 @@ struct BoolMessage {
   static void fields(auto& archive, auto& message) { archive(message.data); }
 };
 
-/// chicane_msgs/msg/StopPlan: times of the plan are [s] after the stamp.
+/// chicane_msgs/msg/StopPlan. Times of the plan are in seconds after the stamp.
 struct StopMessage {
   static constexpr std::string_view kType = "chicane_msgs/msg/StopPlan";
   std::int64_t stamp = 0;  ///< stamp of the odometry that the command answers
@@ -226,26 +226,26 @@ template <>
 [[nodiscard]] std::optional<StopMessage> decode(std::string_view bytes);
 
 // Requests and replies of the parameter services that every ROS 2 node has (rcl_interfaces/srv), as
-// rmw_cyclonedds sends them: in front of the content stands which client asked, and its number of the
-// request.
+// rmw_cyclonedds sends them: the ServiceCall comes before the content.
 
-/// Fields that a reply repeats from its request.
+/// Identity of a request, which its reply repeats.
 struct ServiceCall {
-  std::uint64_t client = 0;
-  std::int64_t sequence = 0;
+  std::uint64_t client = 0;   ///< number of the client
+  std::int64_t sequence = 0;  ///< number of the request, by that client
 };
 void call_fields(auto& archive, auto& message) { archive(message.call.client, message.call.sequence); }
-/// rcl_interfaces/msg/ParameterType of its value.
+/// rcl_interfaces/msg/ParameterType of a parameter's value.
 [[nodiscard]] std::uint8_t type_number(const foxglove::Parameter& parameter);
 /// rcl_interfaces/msg/ParameterValue, and ParameterDescriptor.
 void value_fields(WritingArchive& archive, const foxglove::Parameter& parameter);
 void value_fields(ReadingArchive& archive, foxglove::Parameter& parameter);
 void descriptor_fields(WritingArchive& archive, const foxglove::Parameter& parameter);
 
+/// Limit of parameters in one message; chosen: bounds memory.
 inline constexpr std::size_t kMostParameters = 100'000;
 
-/// rcl_interfaces/srv/GetParameters and DescribeParameters, and ListParameters, whose prefixes these are.
-/// Bytes after the names are not read.
+/// Requests of rcl_interfaces/srv/GetParameters, DescribeParameters and ListParameters, to which `names` are
+/// prefixes. Bytes after the names are not read.
 struct NamesRequest {
   ServiceCall call{};
   std::vector<std::string> names{};
@@ -256,7 +256,7 @@ struct NamesRequest {
   }
 };
 
-/// rcl_interfaces/srv/SetParameters. Numbers of any kind are double; arrays are read as not set.
+/// Request of rcl_interfaces/srv/SetParameters. Numbers of any kind are double; arrays are read as not set.
 struct SetRequest {
   ServiceCall call{};
   std::vector<foxglove::Parameter> parameters{};
@@ -269,11 +269,12 @@ struct SetRequest {
   }
 };
 
-/// The reply to SetParameters, for each parameter.
+/// Outcome for one parameter in the reply to SetParameters.
 struct SetOutcome {
   bool is_successful = false;
   std::string reason{};  ///< reason of a refusal, a sentence
 };
+/// Reply to SetParameters.
 struct SetReply {
   ServiceCall call{};
   std::vector<SetOutcome> outcomes{};
@@ -284,7 +285,7 @@ struct SetReply {
   }
 };
 
-/// The reply to ListParameters.
+/// Reply to ListParameters.
 struct ListReply {
   ServiceCall call{};
   std::vector<std::string> names{};
@@ -295,8 +296,8 @@ struct ListReply {
   }
 };
 
-/// The reply to GetParameters: values in the order of the request, read without names; monostate: there is
-/// none of that name. Tunables that are whole numbers go as integers.
+/// Reply to GetParameters: values in the order of the request, without names; monostate for a name that no
+/// parameter has. Tunables that are whole numbers are sent as integers.
 struct GetReply {
   ServiceCall call{};
   std::vector<foxglove::Parameter> values{};
@@ -306,7 +307,7 @@ struct GetReply {
   }
 };
 
-/// The reply to DescribeParameters: type, meaning and range from the schema's table. Is not read.
+/// Reply to DescribeParameters: type, meaning and range from the schema's table. Written only.
 struct DescribeReply {
   ServiceCall call{};
   std::vector<foxglove::Parameter> values{};

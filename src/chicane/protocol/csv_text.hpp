@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Lines of text files and their fields: for tables of roads, of cones and of logs.
 #pragma once
 
 #include <algorithm>
@@ -9,9 +10,9 @@
 
 #include "chicane/base/text.hpp"
 
-/// Lines of text files as fields: tables of roads, of cones and of logs.
 namespace chicane::protocol {
 
+/// Text without blanks at both ends.
 inline std::string_view trim(std::string_view text) {
   constexpr std::string_view kBlank = " \t\v\f\r";
   const std::size_t begin = text.find_first_not_of(kBlank);
@@ -19,6 +20,7 @@ inline std::string_view trim(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(kBlank) - begin + 1);
 }
 
+/// Separator of a line's fields: semicolon, comma or tab, the first of these that occurs; else a blank.
 inline char separator_of(std::string_view line) {
   for (const char candidate : {';', ',', '\t'}) {
     if (line.find(candidate) != std::string_view::npos) return candidate;
@@ -26,6 +28,7 @@ inline char separator_of(std::string_view line) {
   return ' ';
 }
 
+/// Fields of a line, trimmed and without quotes; several blanks separate as one does.
 inline std::vector<std::string_view> split(std::string_view line, char separator) {
   std::vector<std::string_view> fields;
   std::size_t begin = 0;
@@ -40,22 +43,23 @@ inline std::vector<std::string_view> split(std::string_view line, char separator
   return fields;
 }
 
-/// A finite number or nothing.
+/// Finite number written by a text, also with a plus sign; none for other texts.
 inline std::optional<double> number(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
   return number_in(text);
 }
 
-/// A finite number with a decimal point, or with a decimal comma where commas separate nothing.
+/// Finite number with a decimal point, or with a decimal comma where fields are separated otherwise.
 inline std::optional<double> number(std::string_view text, char separator) {
   const std::size_t comma = text.find(',');
-  if (separator == ',' || comma == std::string_view::npos || text.size() > 40) return number(text);
+  constexpr std::size_t kLongest = 40;  // [byte] of a number with a comma; chosen: bounds the copy
+  if (separator == ',' || comma == std::string_view::npos || text.size() > kLongest) return number(text);
   std::string with_point{text};
   with_point[comma] = '.';
   return text.find('.') == std::string_view::npos ? number(with_point) : std::nullopt;
 }
 
-/// Whether a text is a number, finite or not, or an empty field: part of a row, never of a header.
+/// Whether a text is a number, finite or not, or an empty field: rows have such fields, headers have none.
 inline bool stands_for_a_number(std::string_view text) {
   return text.empty() || number(text) || text == "nan" || text == "NaN" || text == "inf" || text == "-inf" ||
          text == "None";
@@ -71,7 +75,7 @@ inline bool is_name(std::string_view text) {
   return !text.empty() && is_letter(text.front()) && std::all_of(text.begin(), text.end(), may_follow);
 }
 
-/// The lines of a text, trimmed, without a byte-order mark; ended by LF, CRLF or CR.
+/// Lines of a text, trimmed, without a byte-order mark. Lines end by LF, CRLF or CR.
 class CsvLines {
  public:
   explicit CsvLines(std::string_view text) : rest_{text} {
@@ -90,19 +94,11 @@ class CsvLines {
   [[nodiscard]] int number() const noexcept { return number_; }
 
  private:
-  std::string_view rest_;
-  int number_ = 0;
+  std::string_view rest_;  ///< text after the last line
+  int number_ = 0;         ///< of the last line
 };
 
-inline std::string lower(std::string_view text) {
-  std::string result{text};
-  for (char& c : result) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return result;
-}
-
-/// Whether a word is one of those between blanks: " x y_m ".
+/// Whether a word is in a list of words that has a blank before and after each: " x y_m ".
 inline bool is_among(std::string_view word, std::string_view words) {
   return words.find(' ' + std::string{word} + ' ') != std::string_view::npos;
 }

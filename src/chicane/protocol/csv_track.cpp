@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Roads from tables of numbers: finds separator, header and columns, and reads the rows. Writes a road as
-// such a table.
+// Tables of numbers as roads: finds separator, header and columns of a table, reads its rows, and writes a
+// road as a table.
 #include "chicane/protocol/track_codec.hpp"
 
 #include <fmt/format.h>
@@ -21,9 +21,10 @@
 namespace chicane::protocol {
 namespace {
 
+/// Names of columns with one meaning.
 struct Meaning {
   Column column;
-  std::string_view names;  ///< names, separated by blanks
+  std::string_view names;  ///< with a blank before and after each
 };
 constexpr std::array kMeanings{
     Meaning{Column::kX, " x_m x x_ref_m x[m] x(m) pos_x position_x easting "},
@@ -36,11 +37,14 @@ constexpr std::array kMeanings{
 };
 constexpr std::string_view kTagNames = " tag color colour type class side ";
 
-constexpr std::size_t kMaxLine = 65536;  // [bytes]
-constexpr std::size_t kMostColumns = 1000;
-constexpr double kSameAngle = 0.3;     // headings from points scatter by this [rad]
-constexpr std::size_t kMostNamed = 8;  // unknown columns in one warning
-constexpr double kLeastRoad = 0.5;     // a full-size road within so small a square is in degrees [m]
+// Chosen: bounds memory and messages.
+constexpr std::size_t kMaxLine = 65536;     // [byte]
+constexpr std::size_t kMostColumns = 1000;  // of a table
+constexpr std::size_t kMostNamed = 8;       // unknown columns in one warning
+
+constexpr double kSameAngle = 0.3;  // [rad] scatter of headings computed from points; chosen
+constexpr double kLeastRoad =
+    0.5;  // [m] least extent of a full-size road: smaller ones are in degrees; chosen
 constexpr std::string_view kPlane = "columns x and y (or x_m and y_m) in metres";
 
 Column column_of(std::string_view name) {
@@ -49,7 +53,7 @@ Column column_of(std::string_view name) {
   return found == kMeanings.end() ? Column::kUnknown : found->column;
 }
 
-/// Headers of the wild mix their separators: "ax_mps2, w_tr_right_m" after semicolons.
+/// Names of columns in a header. Some files mix separators: "ax_mps2, w_tr_right_m" between semicolons.
 std::vector<std::string_view> split_names(std::string_view header) {
   std::vector<std::string_view> names;
   const char separator = separator_of(header);
@@ -63,7 +67,7 @@ std::vector<std::string_view> split_names(std::string_view header) {
   return names;
 }
 
-/// Whether text is the line of column names.
+/// Whether a text is a header with columns x and y.
 bool names_a_plane(std::string_view text) {
   const std::string low = lower(text);
   const std::vector<std::string_view> names = split_names(low);
@@ -73,7 +77,7 @@ bool names_a_plane(std::string_view text) {
   return has(Column::kX) && has(Column::kY);
 }
 
-/// Whether a comment looks like the names of columns, whatever they are: "v_mps, ax_max_machines_mps2".
+/// Whether a comment is a list of column names of any meaning: "v_mps, ax_max_machines_mps2".
 bool names_columns(std::string_view comment) {
   const std::vector<std::string_view> names = split_names(comment);
   const bool has_separator = separator_of(comment) != ' ';
@@ -81,6 +85,7 @@ bool names_columns(std::string_view comment) {
          std::all_of(names.begin(), names.end(), is_name);
 }
 
+/// Reader of one table, line by line. The first fault ends it.
 class TableReader {
  public:
   TableReader(const std::string& file, const TrackReadOptions& options, bool has_tags)
@@ -113,11 +118,11 @@ class TableReader {
     if (line.front() == '#' || line.front() == '%')
       return read_comment(trim(line.substr(std::min(line.find_first_not_of("#%"), line.size()))));
     if (!has_points() && is_header(line)) return read_header(line);
-    read_point(trim(line.substr(0, line.find_first_of("#%"))));  // a remark may follow the numbers
+    read_point(trim(line.substr(0, line.find_first_of("#%"))));  // without a remark after the numbers
   }
 
-  /// Whether a line above the first point is the header: the first one without a number in front, or any that
-  /// names x and y.
+  /// Whether a line above the first point is the header: any line that names x and y, or the first line that
+  /// does not begin with a number.
   [[nodiscard]] bool is_header(std::string_view line) const {
     if (names_a_plane(line)) return true;
     const std::vector<std::string_view> values = split(line, separator_of(line));
@@ -195,8 +200,8 @@ class TableReader {
       warn_of_width(rows_.content, rows_.options, line_);
   }
 
-  /// Handles numbers without a line of names: two columns are a line of points. More columns are never
-  /// guessed: widths, height, speed and heading look alike.
+  /// Takes a header for a table without one: the options' columns, or x and y for two columns. More columns
+  /// are a fault: widths, height, speed and heading look alike.
   void assume_header(std::size_t count) {
     if (has_tags_) return read_header("tag,x,y");
     if (!rows_.options.columns.empty()) return read_header(rows_.options.columns);
@@ -223,21 +228,21 @@ class TableReader {
     rows_.add(line_, values, separator_);
   }
 
-  /// Handles a comment that names columns, but not x and y.
+  /// Comment that names columns, but not x and y: the cause of a fault in a table without a header.
   struct OtherNames {
     int line = 0;
     std::string text;
-    std::size_t count = 0;
+    std::size_t count = 0;  ///< of the names
   };
 
   RoadRows rows_;
-  bool has_tags_;
+  bool has_tags_;  ///< a table of cones
   OtherNames other_names_;
-  char separator_ = '\0';
-  int line_ = 0;
+  char separator_ = '\0';  ///< of the rows, found in the first one
+  int line_ = 0;           ///< number of the current line
 };
 
-/// Rejects degrees of latitude and longitude in columns read as metres.
+/// Refuses columns in metres whose values are plausible as degrees of latitude and longitude only.
 void check_extent(RoadRows& rows) {
   if (rows.error) return;
   const Vec2& first = rows.content.points.front().position;
@@ -256,7 +261,8 @@ void check_extent(RoadRows& rows) {
                "metres: project the points to a plane first");
 }
 
-/// Warns if a column of headings has another zero; headings are always recomputed.
+/// Warns if a column of headings counts from another axis or contradicts the points. Headings are recomputed
+/// from the points in any case.
 void compare_headings(RoadRows& rows) {
   const std::vector<road::TrackPoint>& points = rows.content.points;
   const std::vector<double>& headings = rows.headings;

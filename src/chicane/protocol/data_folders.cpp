@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Folders of the shipped files, from the places of program and library, and the build ids of both.
+// Search for the folders of the shipped files, from the paths of program and library; build ids of both.
 #include "chicane/protocol/data_folders.hpp"
 
 #include <elf.h>
@@ -27,13 +27,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The absolute path of a file that exists, with links resolved; empty for anything else.
+/// Absolute path of a file, with links resolved; empty if there is no such file.
 std::string existing_file(const char* path) {
   std::error_code missing;
   const fs::path file = path == nullptr ? fs::path() : fs::canonical(path, missing);
   return missing ? "" : file.string();
 }
 
+/// File of the running program; empty if unknown.
 std::string running_program() {
 #ifdef __linux__
   if (const std::string file = existing_file("/proc/self/exe"); !file.empty()) return file;
@@ -43,8 +44,8 @@ std::string running_program() {
 #endif
 }
 
-/// In a statically linked program this is the name that it was called by, which is a path only if it has a
-/// slash.
+/// Shared object that contains this function; empty if unknown. dladdr() names a statically linked program as
+/// it was called: only a name with a slash is a path.
 std::string containing_object() {
 #ifdef __linux__
   Dl_info info{};
@@ -93,7 +94,7 @@ namespace {
 
 constexpr std::size_t padded(std::size_t size) { return (size + 3) & ~std::size_t{3}; }
 
-/// The build id among the notes in [at, end).
+/// Appends the build id among the ELF notes in [at, end).
 void add_build_id(const char* at, const char* end, std::string& ids) {
   while (end - at >= static_cast<std::ptrdiff_t>(sizeof(ElfW(Nhdr)))) {
     ElfW(Nhdr) note;
@@ -108,7 +109,7 @@ void add_build_id(const char* at, const char* end, std::string& ids) {
   }
 }
 
-/// Adds the build id of one loaded file; the program comes first.
+/// Appends the build id of one loaded file; ends after the program, which comes first, if that has none.
 int add_build_ids(dl_phdr_info* info, std::size_t, void* data) {
   auto& ids = *static_cast<std::string*>(data);
   const bool is_program = ids.empty();

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
+// Folders that have the shipped files: presets, cars, tracks, scenarios.
 #pragma once
 
 #include <string>
 #include <string_view>
 #include <vector>
 
-/// The folders that hold the shipped files: presets, cars, tracks, scenarios.
-
 namespace chicane::protocol {
 
-/// Places from which the search for folders starts; empty if unknown.
+/// Paths from which the search for folders starts; empty if unknown.
 struct DataOrigins {
   std::string environment{};  ///< value of the variable CHICANE_DATA_DIR: a folder with the folder `presets`
   std::string program{};      ///< file of the running program, absolute
@@ -17,17 +16,17 @@ struct DataOrigins {
   std::string header{};         ///< absolute path of this header in the build's installation
 };
 
-/// The origins of this process. Reads the environment and, where the system has it, /proc. Without /proc the
-/// program is the path that it was started with.
+/// Origins of this process, from the environment and, where the system has it, /proc. Without /proc the
+/// program is the path by which it was started.
 [[nodiscard]] DataOrigins data_origins();
 
-/// Every folder in which a file of `kind` ("presets") is looked for, the first one first, whether it exists
-/// or not, each once:
+/// Folders in which a file of `kind` ("presets") is searched, in this order, each once, whether it exists or
+/// not:
 ///
 ///   1. ./presets;
 ///   2. presets in the folder that CHICANE_DATA_DIR names;
-///   3. share/chicane/presets in the program's folder, in the one above, and in the one above that: a folder
-///      that was unpacked, an installation wherever it was moved to, a build tree;
+///   3. share/chicane/presets in the program's folder and in the two folders above it: of an unpacked folder,
+///      of an installation that may have been moved, of a build tree;
 ///   4. the same for the shared object that contains the library, such as a Python module;
 ///   5. share/chicane/presets of the installation whose headers the program was compiled with;
 ///   6. share/chicane/presets of the prefix that the library was configured for, and of /usr.
@@ -36,8 +35,8 @@ struct DataOrigins {
 }  // namespace chicane::protocol
 
 #ifdef CHICANE_USES_INSTALLATION
-// Symbol from the CMake targets and .pc files of an installation. A program that includes this header then
-// knows the installation's place, also after it was moved.
+// Defined for users of an installation's CMake targets and .pc files. A program that includes this header has
+// the path of the installation in this symbol, also after the program was moved.
 extern "C" {
 [[gnu::used]] inline constexpr char chicane_installed_header[] = __FILE__;
 }
@@ -45,8 +44,8 @@ extern "C" {
 
 namespace chicane::protocol {
 
-/// The GNU build ids of this program and of its shared libraries, one after the other: another code, other
-/// bytes. Empty where the program has none (`-Wl,--build-id=none`). Takes some 10 µs.
+/// GNU build ids of this program and of its shared libraries, one after the other. They differ if any of the
+/// code does. Empty if the program has no build id (`-Wl,--build-id=none`). Takes some 10 µs.
 [[nodiscard]] std::string build_ids();
 
 }  // namespace chicane::protocol

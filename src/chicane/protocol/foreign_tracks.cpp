@@ -21,9 +21,9 @@
 namespace chicane::protocol {
 namespace {
 
-constexpr std::size_t kHead = 4096;  // [byte] of a file that decide on its format
+constexpr std::size_t kHead = 4096;  // [byte] from a file's beginning that decide on its format; chosen
 
-/// The first kHead bytes without byte-order mark and leading blanks.
+/// First kHead bytes of a text, without byte-order mark and leading blanks.
 std::string_view head_of(std::string_view text) noexcept {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   text = text.substr(0, kHead);
@@ -40,7 +40,7 @@ bool has_key(std::string_view head, std::string_view key) noexcept {
   return false;
 }
 
-/// ROS's map_server: its YAML, or the picture itself.
+/// Whether a text is an occupancy map of ROS's map_server: its YAML, or the image.
 bool is_map(std::string_view text) noexcept {
   if (text.starts_with("\x89PNG") || text.starts_with("P5\n") || text.starts_with("P2\n")) return true;
   const std::string_view head = head_of(text);
@@ -53,7 +53,7 @@ bool is_xml(std::string_view text) noexcept {
          (head[1] == '?' || head[1] == '!' || (head[1] >= 'A' && head[1] <= 'z'));
 }
 
-/// An object: GeoJSON, or the way points of the ForzaETH race stack.
+/// Whether a text is a JSON object of a known kind: GeoJSON, or way points of the ForzaETH race stack.
 bool is_json(std::string_view text) noexcept {
   const std::string_view head = head_of(text);
   if (head.empty() || head[0] != '{') return false;
@@ -67,7 +67,7 @@ bool is_yaml_cones(std::string_view text) noexcept {
   return has_key(head, "cones_left") || has_key(head, "cones_right");
 }
 
-/// A table whose first row of numbers names a colour.
+/// Whether a text is a table of cones: its first row of numbers names a colour.
 bool is_csv_cones(std::string_view text) noexcept {
   constexpr std::string_view kColours = " blue yellow blue_cone yellow_cone cone_blue cone_yellow ";
   constexpr int kMostRows = 4;
@@ -99,6 +99,7 @@ Result<TrackFile> refuse_commonroad(const XmlDocument& xml, const TrackReadOptio
                        "one road, such as points of its line: lanelets are not read"));
 }
 
+/// Kind of XML file, by its root element.
 struct Dialect {
   std::string_view tag, kind;
   Result<TrackFile> (*read)(const XmlDocument&, const TrackReadOptions&);
@@ -139,17 +140,19 @@ Result<TrackFile> parse_xml_track(std::string_view text, const std::string& file
 
 namespace {
 
-constexpr std::size_t kMostNamed = 5;  // gaps in warnings
+constexpr std::size_t kMostNamed = 5;  // gaps in warnings; chosen
 
+/// Rows of cones: position and tag.
 RoadRows cone_rows(const std::string& file, const TrackReadOptions& options) {
   return {file, options, {{"x", Column::kX}, {"y", Column::kY}, {"tag", Column::kTag}}};
 }
 
-/// Cones by the words of files: "blue", "cone_yellow", "big_orange", "left".
+/// Cones by their tags in files: "blue", "cone_yellow", "big_orange", "left". Blue is left, yellow right, as
+/// in Formula Student.
 struct ConeMap {
   survey::Cones cones;
-  std::optional<Vec2> start{};
-  int unknown = 0;  ///< cones whose colour names no side
+  std::optional<Vec2> start{};  ///< start of the car, if the file has it
+  int unknown = 0;              ///< cones whose colour names no side
 
   void add(std::string_view tag, const Vec2& place) {
     const auto has = [&](std::string_view word) { return tag.find(word) != std::string_view::npos; };
@@ -178,6 +181,7 @@ Result<TrackFile> track_of_cones(const RoadRows& rows) {
   TrackFile content = RoadRows{file, rows.options}.content;
   content.points = std::move(road->points);
   content.is_closed = road->is_closed;
+  // Chosen: noise of placed cones, and a spacing that follows bends of roads of any scale.
   content.options.smoothing_sigma = std::min(0.1, 0.05 * road->median_width);
   content.options.spacing = std::clamp(0.2 * road->median_width, 0.05, 2.0);
   for (std::size_t i = 0; i < road->gaps.size() && i < kMostNamed; ++i) {
@@ -229,6 +233,7 @@ Result<TrackFile> parse_yaml_cones(std::string_view text, const std::string& fil
   return track_of_cones(rows);
 }
 
+/// Whether the name or URI of a model is that of a cone.
 bool is_cone(const std::string& tag) { return lower(tag).find("cone") != std::string::npos; }
 
 /// Cones of an SDF world: an `include` or `model` whose URI or name has a colour, or a `link` of a whole
@@ -255,9 +260,10 @@ Result<TrackFile> track_of_sdf(const XmlDocument& xml, const TrackReadOptions& o
 
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{16} << 20U;  // limit of a JSON file, whose tree is far larger
+// Limit of a JSON file [byte]; chosen: its tree takes far more memory.
+constexpr std::size_t kMostBytes = std::size_t{16} << 20U;
 
-/// A member of an object or an element of a list; null where there is none.
+/// Member of an object, or element of a list; null if there is none.
 template <typename Key>
 const Json& at(const Json& json, const Key& key) {
   static const Json kNone;
@@ -269,7 +275,7 @@ const Json& at(const Json& json, const Key& key) {
   }
 }
 
-/// Adds a row for each element of a list: its values of `keys`, which name the columns.
+/// Adds a row for each element of a list: the element's members `keys`, one for each column.
 template <typename Key>
 void add_rows(const Json& list, const std::vector<Key>& keys, RoadRows& rows) {
   for (const Json& each : list) {
@@ -282,7 +288,7 @@ void add_rows(const Json& list, const std::vector<Key>& keys, RoadRows& rows) {
   }
 }
 
-/// ROS's messages of way points: {"centerline_waypoints": {"wpnts": [{"x_m": 1.0, …}, …]}, …}.
+/// Road of ROS messages of way points: {"centerline_waypoints": {"wpnts": [{"x_m": 1.0, …}, …]}, …}.
 Result<TrackFile> track_of_way_points(const Json& root, const std::string& file,
                                       const TrackReadOptions& options) {
   RoadRows rows{
@@ -296,7 +302,7 @@ Result<TrackFile> track_of_way_points(const Json& root, const std::string& file,
     add_rows(list, std::vector<const char*>{"x_m", "y_m", "d_left", "d_right"}, rows);
     Result<TrackFile> content = rows.build();
     if (!content) return content;
-    double width = 0.0;
+    double width = 0.0;  // mean
     for (const road::TrackPoint& point : content->points)
       width += (point.left + point.right) / static_cast<double>(content->points.size());
     content->options.spacing = std::clamp(0.1 * width, 0.05, 2.0);
@@ -311,7 +317,7 @@ Result<TrackFile> track_of_way_points(const Json& root, const std::string& file,
                        "a list of them there or in global_traj_wpnts_iqp"));
 }
 
-/// Appends the lines of a geometry; points and other shapes are no roads.
+/// Appends the lines of a GeoJSON geometry, in which points and other shapes have none.
 void find_lines(const Json& geometry, std::vector<const Json*>& lines) {
   const Json& type = at(geometry, "type");
   const Json& list = at(geometry, "coordinates");

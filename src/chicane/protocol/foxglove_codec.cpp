@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Foxglove protocol, server side: reads clients' messages, and writes the server's.
+// Foxglove protocol, server side: reads messages of clients, and writes those of the server.
 #include "chicane/protocol/foxglove_codec.hpp"
 
 #include <fmt/format.h>
@@ -15,12 +15,13 @@ namespace {
 
 using telemetry::mcap::Fields;
 
+// Opcodes of binary messages: three of the server, one of clients.
 constexpr char kMessageData = 1;
 constexpr char kTime = 2;
 constexpr char kServiceResponse = 3;
-constexpr char kServiceRequest = 2;  // opcode from the client
+constexpr char kServiceRequest = 2;
 
-/// Client's text, short enough to be repeated in an answer.
+/// Value from a client for messages, cut to 40 bytes.
 std::string shown(const Json& value) {
   std::string text = json_text(value, JsonLayout::kAscii);
   if (text.size() > 40) text = text.substr(0, 37) + "...";
@@ -31,6 +32,7 @@ tl::unexpected<Error> refuse(std::string_view key, const Json& got, std::string_
   return fail(ErrorCode::kParse, fmt::format("{}: got {}, expected {}", key, shown(got), expected));
 }
 
+/// Member of an object; null if it has none of that key.
 const Json& member(const Json& object, const char* key) {
   static const Json missing;
   const auto found = object.find(key);
@@ -104,16 +106,17 @@ Result<Parameter> to_parameter(std::string_view key, const Json& value) {
   return Parameter{std::move(*name), std::move(*content)};
 }
 
+/// Id of a request, which its answer repeats.
 std::optional<std::string> request_of(const Json& message) {
   const Json& id = member(message, "id");
   return id.is_string() ? std::optional{id.get<std::string>()} : std::nullopt;
 }
 
-template <class Message>
-Result<ClientMessage> with_names(const Json& message) {
-  auto names = to_list<std::string>("parameterNames", member(message, "parameterNames"), to_text);
-  if (!names) return fail(names.error());
-  return Message{std::move(*names)};
+/// Message of a list that was read and of further fields; the list's fault if it could not be read.
+template <class Message, class T, class... Fields>
+Result<ClientMessage> message_of(Result<std::vector<T>> list, Fields... fields) {
+  if (!list) return fail(list.error());
+  return Message{std::move(*list), std::move(fields)...};
 }
 
 Result<ClientMessage> to_received(const Json& message) {
@@ -128,28 +131,21 @@ Result<ClientMessage> parse_text(std::string_view bytes) {
   const Json message = parse_json(bytes);
   if (!message.is_object()) return fail(ErrorCode::kParse, "a text message must be one JSON object in UTF-8");
   const Json& op = member(message, "op");
-  if (op == "subscribe") {
-    auto list = to_list<Subscription>("subscriptions", member(message, "subscriptions"), to_subscription);
-    if (!list) return fail(list.error());
-    return Subscribe{std::move(*list)};
-  }
-  if (op == "unsubscribe") {
-    auto ids = to_list<std::uint32_t>("subscriptionIds", member(message, "subscriptionIds"), to_id);
-    if (!ids) return fail(ids.error());
-    return Unsubscribe{std::move(*ids)};
-  }
-  if (op == "getParameters") {
-    auto names = to_list<std::string>("parameterNames", member(message, "parameterNames"), to_text);
-    if (!names) return fail(names.error());
-    return GetParameters{std::move(*names), request_of(message)};
-  }
-  if (op == "setParameters") {
-    auto parameters = to_list<Parameter>("parameters", member(message, "parameters"), to_parameter);
-    if (!parameters) return fail(parameters.error());
-    return SetParameters{std::move(*parameters), request_of(message)};
-  }
-  if (op == "subscribeParameterUpdates") return with_names<SubscribeParameters>(message);
-  if (op == "unsubscribeParameterUpdates") return with_names<UnsubscribeParameters>(message);
+  const auto names = [&] {
+    return to_list<std::string>("parameterNames", member(message, "parameterNames"), to_text);
+  };
+  if (op == "subscribe")
+    return message_of<Subscribe>(
+        to_list<Subscription>("subscriptions", member(message, "subscriptions"), to_subscription));
+  if (op == "unsubscribe")
+    return message_of<Unsubscribe>(
+        to_list<std::uint32_t>("subscriptionIds", member(message, "subscriptionIds"), to_id));
+  if (op == "setParameters")
+    return message_of<SetParameters>(
+        to_list<Parameter>("parameters", member(message, "parameters"), to_parameter), request_of(message));
+  if (op == "getParameters") return message_of<GetParameters>(names(), request_of(message));
+  if (op == "subscribeParameterUpdates") return message_of<SubscribeParameters>(names());
+  if (op == "unsubscribeParameterUpdates") return message_of<UnsubscribeParameters>(names());
   if (op == "received") return to_received(message);
   return fail(ErrorCode::kParse, fmt::format("op: {} is not offered by this server", shown(op)));
 }

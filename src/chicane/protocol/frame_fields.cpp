@@ -21,6 +21,7 @@ using Numbers = std::span<const double>;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
+/// Name of a type in .msg files.
 template <class T>
 consteval std::string_view type_name() {
   if constexpr (std::is_same_v<T, Stamp>) return "builtin_interfaces/Time";
@@ -34,7 +35,8 @@ consteval std::string_view type_name() {
   if constexpr (std::is_same_v<T, Numbers>) return "float64[]";
 }
 
-/// A row of the table: T is the type on the wire, `value` a lambda without captures from a frame.
+/// Row of the table. T: type in the message; `value`: lambda without captures that reads the value from a
+/// frame.
 template <class T, class Value>
 constexpr FrameField field(std::string_view name, std::string_view meaning, Value /*value*/,
                            std::span<const FrameConstant> constants = {}) {
@@ -52,7 +54,7 @@ constexpr FrameConstant constant(std::string_view name, Enum value, std::string_
 
 using ConstantName = std::array<char, 40>;  // ends with a zero
 
-/// Names of constants: "RUNG_" and "guard_stop" give "RUNG_GUARD_STOP".
+/// Names of the constants of an enumeration: "RUNG_" and "guard_stop" give "RUNG_GUARD_STOP".
 template <class Enum, std::size_t N>
 consteval std::array<ConstantName, N> capital_names(std::string_view prefix,
                                                     const std::array<Word<Enum>, N>& words) {
@@ -79,11 +81,12 @@ constexpr std::array<FrameConstant, N> constants(const std::array<ConstantName, 
   return rows;
 }
 
-/// Value that only a judge of the road has; not-a-number with an external simulator.
+/// `value`, which is known where the road is judged; else not-a-number.
 double judged(const Frame& frame, double value) { return frame.is_judged ? value : kNaN; }
-/// Value that only a simulated car has.
+/// `value`, which is known of a simulated car; else not-a-number.
 double simulated(const Frame& frame, double value) { return frame.has_truth ? value : kNaN; }
 
+/// Speed of the car [m/s]: the truth if the frame has it, else as measured.
 double speed(const Frame& frame) {
   return frame.has_truth ? chicane::hypot(frame.truth.vx, frame.truth.vy) : frame.measurement.speed;
 }

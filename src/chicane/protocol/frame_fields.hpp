@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Table of the fields of a frame, the message by which recordings and viewers know each control cycle.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +14,7 @@
 
 namespace chicane::protocol {
 
-/// A time of the run as ROS 2 sends it: builtin_interfaces/Time.
+/// Time of the run, sent as builtin_interfaces/Time of ROS 2.
 struct Stamp {
   double seconds = 0.0;  ///< [s]
 };
@@ -41,17 +42,19 @@ struct FrameField {
   std::span<const FrameConstant> constants{};  ///< in the order of the definition; empty for a quantity
 };
 
+/// Fields that belong together.
 struct FrameGroup {
-  std::string_view title;  ///< a sentence, in one line; empty for the first group
+  std::string_view title;  ///< one line; empty for the first group
   std::span<const FrameField> fields;
 };
 
-/// The fields of a frame in the order they are sent in: the one place where they are listed. Encoder
-/// (ros_messages.hpp) and definition of the message follow from this table, and from the definition the
-/// dashboard's types and the columns of its history (web/src/protocol/messages.ts; CONTRIBUTING.md says how).
+/// Fields of a frame in the order in which they are sent. Encoder (ros_messages.hpp) and definition of the
+/// message follow from this table. The dashboard's types and the columns of its history follow from the
+/// definition (web/src/protocol/messages.ts; CONTRIBUTING.md says how).
 [[nodiscard]] std::span<const FrameGroup> frame_groups() noexcept;
 
-/// Known motion of the car: the truth, or the measurement; lateral speed and yaw rate are then not-a-number.
+/// Known motion of the car: the truth if the frame has it, else the measurement, with lateral velocity and
+/// yaw rate not-a-number.
 [[nodiscard]] model::State known_motion(const telemetry::Frame& frame) noexcept;
 
 }  // namespace chicane::protocol

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Roads from lines in geographic coordinates: GPX, KML and OpenStreetMap.
+// Roads from lines in geographic coordinates: GPX, KML and OpenStreetMap. Each reader collects one line of
+// latitudes and longitudes; track_of_line() projects it to metres, takes one lap, and estimates its noise.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,13 +22,15 @@ namespace {
 
 using survey::Geographic;
 
-constexpr double kLeastStep = 1.0;    // nearer places are where a receiver stands still [m]
-constexpr double kLeastLap = 150.0;   // [m]
-constexpr double kMeets = 25.0;       // a lap is over where it comes this near to its beginning [m]
-constexpr double kMostExtent = 50e3;  // [m]
-constexpr double kLeastNoise = 0.05;  // half a unit of the sixth decimal of a degree [m]
+constexpr double kLeastStep =
+    1.0;  // [m] between points: nearer ones are of a receiver that stands still; chosen
+constexpr double kLeastLap = 150.0;  // [m] length of the shortest lap; chosen
+constexpr double kMeets = 25.0;  // [m] from its beginning to the end of a lap, at most; chosen: errors of GPS
+constexpr double kMostExtent = 50e3;  // [m] from the middle; chosen: beyond it the projection bends roads
+constexpr double kLeastNoise = 0.05;  // [m] derived: half a unit of the sixth decimal of a degree
 
-/// Points up to where the line meets its beginning in the same direction; how many laps the line has.
+/// Cuts off the points from where the line meets its beginning in the same direction. Returns the number of
+/// laps that the line had.
 double cut_first_lap(std::vector<Vec2>& points) {
   double passed = 0.0;
   const double total = survey::length_of(points, false);
@@ -45,6 +48,7 @@ double cut_first_lap(std::vector<Vec2>& points) {
   return 1.0;
 }
 
+/// Adds the point of a node with latitude and longitude.
 void add_node(const XmlDocument& xml, pugi::xml_node node, GeoLine& line) {
   line.rows.add(xml.line_of(node),
                 {trim(node.attribute("lat").value()), trim(node.attribute("lon").value())});
@@ -70,7 +74,7 @@ Result<TrackFile> track_of_line(GeoLine line) {
   if (most > kMostExtent)
     rows.fault(0, "line", fmt::format("one that is {:.0f} km wide", 2e-3 * most), "at most 100 km");
   const double laps = line.is_driven && points.size() > 8 ? cut_first_lap(points) : 1.0;
-  // A width is the same all along the line.
+  // One width for the whole line.
   const bool has_width = line.width > 0.0 && line.width <= kMaxTrackWidth;
   road::TrackPoint point = content.points.front();
   if (has_width) point.left = point.right = 0.5 * line.width;
@@ -114,7 +118,7 @@ Result<TrackFile> track_of_kml(const XmlDocument& xml, const TrackReadOptions& o
   const auto is_longer = [](const GeoLine& a, const GeoLine& b) {
     return !b.rows.error && (a.rows.error || a.rows.content.points.size() > b.rows.content.points.size());
   };
-  // The element with most places is the road, others are marks.
+  // Takes the element with most points as the road: others are marks.
   GeoLine best{xml.file, options};
   for (const pugi::xml_node node : xml.find_all("coordinates")) {
     GeoLine line{xml.file, options};
@@ -130,9 +134,10 @@ Result<TrackFile> track_of_kml(const XmlDocument& xml, const TrackReadOptions& o
 
 namespace {
 
+/// Way of OpenStreetMap.
 struct OsmWay {
-  std::deque<std::string> nodes;
-  double width = 0.0;  ///< [m]; 0: none in the file
+  std::deque<std::string> nodes;  ///< ids
+  double width = 0.0;             ///< [m]; 0: none in the file
   bool is_raceway = false, is_one_way = false;
 };
 
@@ -151,7 +156,8 @@ OsmWay way_of(pugi::xml_node node) {
 
 bool is_closed(const OsmWay& way) { return way.nodes.size() > 3 && way.nodes.front() == way.nodes.back(); }
 
-/// Joins `way` with others at its ends until it is closed or none fits.
+/// Joins `way` with others that share its first or last node, until it is closed or none is left. Joined ways
+/// leave `others`.
 void join(OsmWay& way, std::vector<OsmWay>& others) {
   for (bool has_grown = true; has_grown && !is_closed(way);) {
     has_grown = false;
@@ -198,7 +204,7 @@ Result<TrackFile> track_of_osm(const XmlDocument& xml, const TrackReadOptions& o
       std::any_of(ways.begin(), ways.end(), [](const OsmWay& way) { return way.is_raceway; });
   if (has_raceway) std::erase_if(ways, [](const OsmWay& way) { return !way.is_raceway; });
   if (ways.empty()) return fail(fault_of(xml.file, 0, "way", "none", "at least one"));
-  // The closed course of most nodes, else the longest.
+  // Takes the closed course of most nodes; without a closed one the course of most nodes.
   OsmWay best;
   std::size_t joined = 0;
   while (!ways.empty()) {

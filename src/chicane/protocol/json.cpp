@@ -29,9 +29,11 @@ tl::expected<Json, JsonError> read_json(std::string_view text) {
 
 namespace {
 
-constexpr double kSteps = 1e4;  ///< least resolution of an axis, in steps
+constexpr double kSteps =
+    1e4;  // least resolution of an axis, in steps; chosen: beyond the pixels of a screen
 
-/// Steps per unit, a power of ten, to which the coordinates of an axis, every other of `values`, are rounded.
+/// Steps per unit, a power of ten, to which the coordinates of an axis are rounded: of values `axis`, `axis`
+/// + 2, …
 double steps_per_unit(const std::vector<double>& values, std::size_t axis) {
   double low = std::numeric_limits<double>::max(), high = -low, steps = 1.0;
   for (std::size_t i = axis; i < values.size(); i += 2) {

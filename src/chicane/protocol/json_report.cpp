@@ -24,12 +24,12 @@ using telemetry::LapSummary;
 using telemetry::RunSummary;
 using telemetry::TimeSummary;
 
-/// [%]
+/// Shares in percent.
 std::array<double, 3> percent(const std::array<double, 3>& shares) {
   return {100.0 * shares[0], 100.0 * shares[1], 100.0 * shares[2]};
 }
 
-/// Numbered by their order.
+/// Corners in the order of a lap, by which they are numbered.
 Json to_object(const std::vector<road::Corner>& corners) {
   Json json = Json::array();
   for (const road::Corner& each : corners) {
@@ -72,7 +72,8 @@ std::string cell(double value, int width) {
   return std::isfinite(value) ? fmt::format(" {:>{}.2f}", value, width) : fmt::format(" {:>{}}", "-", width);
 }
 
-/// A line of the table of causes, for a corner or the lap; what none explains comes last.
+/// Line of the table of causes, for a corner or the lap. The last cell is the part of the gap without a
+/// cause.
 std::string cause_line(std::string_view name, double limit, double planned, double lap,
                        const std::vector<double>& without) {
   std::string text = fmt::format("{:>8}", name);
@@ -85,7 +86,8 @@ std::string cause_line(std::string_view name, double limit, double planned, doub
   return text + cell(rest, 5) + "\n";
 }
 
-/// Table of the gap of `lap` by cause, a line for each corner; empty where nothing is known of it.
+/// Table of the gap of `lap` to the limit by cause, a line for each corner; empty for runs without such a
+/// table.
 std::string cause_table(const RunSummary& run, const LapSummary& lap) {
   if (run.without.empty() || !run.limit || lap.corner_times.size() != run.limit->corners.size()) return "";
   const auto at = [](const std::vector<double>& times, std::size_t corner) {
@@ -356,7 +358,7 @@ std::string to_table(const RunSummary& run) {
   }
   text +=
       fmt::format("\noff track          {} times, {:.2f} s\n", run.off_track_events, run.out_of_track_time);
-  if (!run.guard) {  // another program drives: nothing is known of it but when it answers
+  if (!run.guard) {  // another program drives, of which only the time of its answers is known
     text += fmt::format("round trip         {} µs\n                   p50 / p99 / p99.9 / max, {} answers\n",
                         times(run.step_time), run.cycles);
     return text + outcome(run);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Summaries of runs: as JSON for machines, as text for people, and from JSON.
 #pragma once
 
 #include <string>
@@ -10,15 +11,15 @@
 
 namespace chicane::protocol {
 
-/// One JSON object for machines, keys as in docs/reference/cli.md; null where nothing was measured. Ends with
-/// a line break.
+/// JSON object with the keys of docs/reference/cli.md; null for values that were not measured. Ends with a
+/// line break.
 [[nodiscard]] std::string to_json(const telemetry::RunSummary& run);
 
-/// Summary from the JSON of to_json(), for results of runs in other processes: all but guard, limit, solver
-/// and state_hash. Null is not-a-number. kParse for any other text.
+/// Summary from the JSON of to_json(), for results of runs in other processes. Lacks guard, limit, solver and
+/// state_hash. Null becomes not-a-number. Fails with kParse for any other text.
 [[nodiscard]] Result<telemetry::RunSummary> read_run(std::string_view json);
 
-/// Summary for people: one line for each lap, then the run as a whole.
+/// Text for people: one line for each lap, then the run as a whole.
 [[nodiscard]] std::string to_table(const telemetry::RunSummary& run);
 
 /// Names of a run's guard for results, recordings and viewers.
@@ -30,6 +31,7 @@ struct GuardFacts {
   friend bool operator==(const GuardFacts&, const GuardFacts&) = default;
 };
 
+/// Names of a guard with these options.
 [[nodiscard]] GuardFacts guard_facts(const safety::GuardOptions& guard);
 
 }  // namespace chicane::protocol

@@ -24,9 +24,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kMostBytes = 64U << 20U;  // [byte]
-constexpr std::size_t kMostPresets = 8;            // presets that build on presets
+// Chosen: bounds memory, and ends a circle of presets.
+constexpr std::uintmax_t kMostBytes = 64U << 20U;  // [byte] of a file
+constexpr std::size_t kMostPresets = 8;            // presets that build on each other
 
+/// Words and extensions of a shelf.
 struct ShelfNames {
   std::string_view singular, folder;
   std::span<const std::string_view> extensions;
@@ -48,7 +50,7 @@ ShelfNames names(Shelf shelf) {
 
 std::vector<std::string> folders(Shelf shelf) { return data_folders(data_origins(), names(shelf).folder); }
 
-/// The first comment line that describes the file: neither licence nor CSV header.
+/// First comment line of a file that describes it: neither licence nor CSV header; at most 200 bytes.
 std::string first_comment(const fs::path& file) {
   std::ifstream stream(file);
   std::string line;
@@ -63,6 +65,7 @@ std::string first_comment(const fs::path& file) {
   return "";
 }
 
+/// Whether a name is a path: has a slash or an extension.
 bool is_path(std::string_view name) {
   return name.find('/') != std::string_view::npos || !fs::path(name).extension().empty();
 }
@@ -74,7 +77,8 @@ std::string nothing_found(Shelf shelf) {
                      fmt::join(folders(shelf), ", "), folder);
 }
 
-/// `preset: got "dfault", expected a file or one of default, ... (did you mean default?)`.
+/// Error of a name that is on no entry: `preset: got "dfault", expected a file or one of default, ... (did
+/// you mean default?)`.
 Error unknown_name(Shelf shelf, std::string_view name, const std::vector<Entry>& known,
                    std::string_view or_what) {
   const std::string got = fmt::format("{}: got \"{}\", expected ", names(shelf).singular, printable(name));
@@ -100,10 +104,10 @@ Error unknown_name(Shelf shelf, std::string_view name, const std::vector<Entry>&
           fmt::format("{}{}one of {}{}", got, or_what, fmt::join(known_names, ", "), hint)};
 }
 
-/// A name and its place in a file: "runs/wet.yaml:3: ", nothing for the command line and for defaults.
+/// Name of a file, and the position of that name for messages.
 struct Reference {
   std::string name;
-  std::string place{};
+  std::string place{};  ///< "runs/wet.yaml:3: "; empty for the command line and for defaults
 };
 
 /// locate(), with the place in the error.
@@ -122,7 +126,7 @@ Result<Document> read_document(Shelf shelf, const Reference& reference, Remember
   });
 }
 
-/// Checks that a track exists; its document has no settings.
+/// Checks that a track exists. Its document has no settings.
 Result<Document> find_track(const Reference& reference, RememberedFiles& files) {
   return files.document(Shelf::kTrack, reference.name, [&]() -> Result<Document> {
     const Result<std::string> file = locate(Shelf::kTrack, reference);
@@ -133,7 +137,7 @@ Result<Document> find_track(const Reference& reference, RememberedFiles& files) 
   });
 }
 
-/// Reference in the last layer that sets `key`.
+/// Reference by the last layer that sets `key`; `otherwise` if none does.
 Reference last_reference(const std::vector<Document>& layers, std::string_view key,
                          const std::string& otherwise) {
   Reference found{otherwise};
@@ -168,6 +172,7 @@ class Faults {
   std::string message_;
 };
 
+/// Settings of a request as a layer; faults of values go to `faults`.
 Document parse_settings(const Request& request, Faults& faults) {
   Document document;
   for (const auto& [key, text] : request.settings) {
@@ -193,7 +198,7 @@ void refuse_unknown(const Request& request, std::string_view driver, Faults& fau
   }
 }
 
-/// Notes settings without effect: options of controllers that do not drive.
+/// Adds a notice for each setting without effect: options of controllers that do not drive.
 void note_idle(const Document& asked, scenario::Scenario& scenario) {
   for (const Assignment& assignment : asked.assignments) {
     const Parameter& parameter = *assignment.parameter;
@@ -204,8 +209,8 @@ void note_idle(const Document& asked, scenario::Scenario& scenario) {
   }
 }
 
-/// Notes the assumptions of the road's reader. The road has the size in its file: only shipped tracks follow
-/// the scale of the car.
+/// Adds the assumptions of the road's reader as notices. Shipped tracks have the scale of the car; roads of
+/// other files have their own size.
 Result<void> note_track(bool is_asked_for, scenario::Scenario& scenario) {
   const double scale = scenario.vehicle.scale;
   if (!is_path(scenario.track)) {
@@ -225,12 +230,12 @@ Result<void> note_track(bool is_asked_for, scenario::Scenario& scenario) {
   const Result<std::string> text = file ? read_file(*file) : fail(file.error());
   const auto content = text ? parse_track(*text, *file, {.scale = scenario.scale_of_file()})
                             : Result<TrackFile>{fail(text.error())};
-  if (content)  // the run itself reports its faults
+  if (content)  // the run itself reports faults of the road
     scenario.notices.insert(scenario.notices.end(), content->warnings.begin(), content->warnings.end());
   return {};
 }
 
-/// A race with less friction than the model has, because no more is known of the car.
+/// Adds a notice if a race is planned with less friction than the model has.
 void note_friction(scenario::Scenario& scenario) {
   const double friction = scenario.assumed_vehicle().friction;
   if (friction < scenario.vehicle.friction)
@@ -240,7 +245,7 @@ void note_friction(scenario::Scenario& scenario) {
                     friction, scenario.vehicle.friction));
 }
 
-/// A file named in a scenario file may be meant relative to it.
+/// Makes paths that are relative to the document's folder relative to the working directory.
 void resolve_names(Document& document) {
   const fs::path folder = fs::path(document.file).parent_path();
   const auto resolve = [&](std::string& name) {
@@ -255,7 +260,7 @@ void resolve_names(Document& document) {
   }
 }
 
-/// `name` and the presets it builds on, the deepest first.
+/// Preset `name` after the presets that it builds on.
 std::vector<Document> read_presets(Reference name, RememberedFiles& files, Faults& faults) {
   std::vector<Document> presets;
   std::optional<Reference> next = std::move(name);
@@ -280,6 +285,7 @@ std::vector<Document> read_presets(Reference name, RememberedFiles& files, Fault
   return presets;
 }
 
+/// Settings of a car file; none if it cannot be read. A car file has settings of the car alone.
 std::optional<Document> read_car(const Reference& reference, RememberedFiles& files, Faults& faults) {
   Result<Document> car = read_document(Shelf::kCar, reference, files);
   if (!car) {
@@ -375,8 +381,8 @@ Result<std::string> read_file(const std::string& path) {
 
 namespace {
 
-/// The speed of whichever controller drives. kInvalidArgument, in the user's words and unit, where it has
-/// none to set or the speed is out of range.
+/// Sets the reference speed of the controller that drives. Fails with kInvalidArgument, in the unit that the
+/// user typed, if it has no such option or the speed is out of range.
 Result<void> set_speed(const Request& request, scenario::Scenario& scenario) {
   const bool is_mph = !request.speed_mph.empty();
   const std::string_view key = is_mph ? "--speed-mph" : "--speed-mps";

@@ -20,8 +20,8 @@
 namespace chicane::protocol {
 namespace {
 
-/// Puts the start at the map's origin, if that is on the road: maps count from the robot's first pose,
-/// looking along +x. The road takes its direction.
+/// Sets start and direction of a road without options for them. The start is the map's origin if that is on
+/// the road, and the direction there is that of +x: the origin of a map is the robot's first pose.
 void begin_at_origin(TrackFile& content, const TrackReadOptions& options, double width) {
   const Vec2 origin{};
   double nearest = 1e9;
@@ -103,7 +103,7 @@ survey::FreeSpace free_space_of(const OccupancyMap& map) {
                           .origin = map.origin,
                           .yaw = map.yaw};
   space.cells.reserve(map.image.values.size());
-  for (int y = map.image.height - 1; y >= 0; --y)  // the image begins at the top
+  for (int y = map.image.height - 1; y >= 0; --y)  // from the bottom: rows of the image begin at the top
     for (int x = 0; x < map.image.width; ++x) {
       const double dark = map.darkness(x, y);
       if (map.is_unknown(x, y)) {
@@ -129,7 +129,8 @@ Result<TrackFile> parse_map_track(std::string_view text, const std::string& file
   TrackFile content = RoadRows{file, options}.content;
   content.points = std::move(loop->points);
   content.is_closed = true;
-  // Walls are where cells end: a line between them scatters by less than a cell.
+  // Derived: walls are known to a cell, so that the line between them scatters by less than a cell. Chosen:
+  // spacing.
   content.options.smoothing_sigma = std::min(map->resolution, 0.1);
   content.options.spacing = std::clamp(0.1 * loop->median_width, 0.05, 2.0);
   if (loop->spots > 0)

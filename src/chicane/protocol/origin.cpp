@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Reads the remarks of car and road files: intervals of identified parameters, and the lines at a file's
+// head.
 #include "chicane/protocol/origin.hpp"
 
 #include <fmt/format.h>
@@ -17,11 +19,12 @@ namespace {
 
 constexpr std::string_view kLogRemark = "[log] ";
 constexpr std::string_view kTo = " to ";
+// Chosen: bounds the message that has the origin.
 constexpr std::size_t kMostRemarks = 12;
 constexpr std::size_t kLongestRemark = 300;  // [byte]
 constexpr std::size_t kMostParameters = 200;
 
-/// Value in a line of a car file: "  mass_kg: 3.4  # [log] 3.2 to 3.6".
+/// Identified value in a line of a car file: "  mass_kg: 3.4  # [log] 3.2 to 3.6".
 std::optional<IdentifiedValue> identified_line(std::string_view line) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const std::size_t colon = line.find(": ");
@@ -42,7 +45,7 @@ std::optional<IdentifiedValue> identified_line(std::string_view line) {
   return found;
 }
 
-/// The beginning of foreign text as UTF-8.
+/// Beginning of a file's text as UTF-8, with "?" for other bytes and control characters.
 std::string readable(std::string_view text) {
   std::string out;
   while (!text.empty() && out.size() < kLongestRemark) {
@@ -54,7 +57,7 @@ std::string readable(std::string_view text) {
   return out;
 }
 
-/// Assumptions of the road's reader, without the file's name and line.
+/// Notices of the road's reader, which begin with its `file`, without file and line.
 std::vector<std::string> notes_of(const std::string& file, const std::vector<std::string>& notices) {
   std::vector<std::string> notes;
   for (const std::string& notice : notices) {
@@ -69,6 +72,7 @@ std::vector<std::string> notes_of(const std::string& file, const std::vector<std
   return notes;
 }
 
+/// Text of the file of a name on a shelf; sets `file` to its path.
 Result<std::string> text_of(Shelf shelf, const std::string& name, std::string& file) {
   const Result<std::string> found = locate(shelf, name);
   if (!found) return fail(found.error());
@@ -91,7 +95,7 @@ std::vector<IdentifiedValue> identified_in(std::string_view car_file) {
     has_band = has_band || each->low <= each->high;
     found.push_back(*each);
   }
-  if (!has_band) found.clear();  // marks of others
+  if (!has_band) found.clear();  // without an interval no log was used
   return found;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Messages of types of our own, from rows of fields, and the scene with road and car for viewers.
+// Messages of chicane_msgs: the rows of each, of which bytes and definition are made, and the scene with road
+// and car for viewers. A row has the name of a field, its meaning, and its value.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,6 +39,7 @@ using telemetry::Frame;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
+/// Values of one member, or of a function, for each element of a list.
 template <class List, class ValueOf>
 Numbers column(const List& list, ValueOf value_of) {
   Numbers numbers;
@@ -201,6 +203,7 @@ constexpr auto kLimit = [](auto& row, const Frame& /*frame*/, const Run& run) {
       corner_times);
 };
 
+/// Rows of chicane_msgs/Change, for writing, reading and definition.
 void change_rows(auto& row, auto&& stamp, auto&& cycle, auto&& name, auto&& value) {
   row("stamp", "", stamp);
   row("cycle", "", cycle);
@@ -208,14 +211,16 @@ void change_rows(auto& row, auto&& stamp, auto&& cycle, auto&& name, auto&& valu
   row("value", "as --set takes it", value);
 }
 
+/// Columns of a stop plan in a message: time, distance, speed, steer, throttle.
 using StopColumns = std::array<Numbers, 5>;
 
-/// Places in `point`, in the order of the columns.
-auto places_of(auto& point) {
+/// Pointers to the numbers of a point of a stop plan, in the order of StopColumns.
+auto numbers_of(auto& point) {
   return std::array{&point.time, &point.distance, &point.speed, &point.command.steer,
                     &point.command.throttle};
 }
 
+/// Rows of chicane_msgs/StopPlan, for writing, reading and definition.
 void stop_rows(auto& row, auto&& stamp, auto&& columns) {
   row("stamp", "of the odometry that the command answers", stamp);
   row("time_s", "after the stamp, from which the command acts", columns[0]);
@@ -225,7 +230,7 @@ void stop_rows(auto& row, auto&& stamp, auto&& columns) {
   row("throttle", "[-1, 1], negative brakes", columns[4]);
 }
 
-/// chicane_msgs/Frame: constants in front of their field.
+/// Definition of chicane_msgs/Frame: the constants of a field come before it.
 std::string frame_definition() {
   DefinedRows rows(
       "One control cycle. SI units and radians; left, counter-clockwise and\n"
@@ -241,12 +246,14 @@ std::string frame_definition() {
   return rows.text();
 }
 
+/// Message that is not made from frames.
 OwnMessage defined(std::string_view name, std::string_view about, auto rows_of) {
   DefinedRows rows(about);
   rows_of(rows);
   return {name, rows.text(), nullptr};
 }
 
+/// Message that is made from frames, by its rows.
 template <auto kRows>
 OwnMessage message_of_frame(std::string_view name, std::string_view about) {
   OwnMessage message = defined(name, about, [](auto& row) { kRows(row, Frame{}, Run{}); });
@@ -290,8 +297,8 @@ template <>
 std::string encode(const StopMessage& message) {
   StopColumns columns;
   for (int i = 0; i < message.stop.size; ++i) {
-    const auto places = places_of(message.stop.points[static_cast<std::size_t>(i)]);
-    for (std::size_t k = 0; k < columns.size(); ++k) columns[k].push_back(*places[k]);
+    const auto numbers = numbers_of(message.stop.points[static_cast<std::size_t>(i)]);
+    for (std::size_t k = 0; k < columns.size(); ++k) columns[k].push_back(*numbers[k]);
   }
   const StampNs stamp{message.stamp};
   return written([&](auto& row) { stop_rows(row, stamp, columns); });
@@ -310,11 +317,11 @@ std::optional<StopMessage> decode(std::string_view bytes) {
   message.stop.size = static_cast<int>(size);
   for (std::size_t k = 0; k < columns.size(); ++k) {
     if (columns[k].size() != size) return std::nullopt;
-    for (std::size_t i = 0; i < size; ++i) *places_of(message.stop.points[i])[k] = columns[k][i];
+    for (std::size_t i = 0; i < size; ++i) *numbers_of(message.stop.points[i])[k] = columns[k][i];
   }
   for (std::size_t i = 0; i < size; ++i) {
-    for (const double* place : places_of(message.stop.points[i]))
-      if (!std::isfinite(*place)) return std::nullopt;
+    for (const double* number : numbers_of(message.stop.points[i]))
+      if (!std::isfinite(*number)) return std::nullopt;
     if (i > 0 && message.stop.points[i].time < message.stop.points[i - 1].time) return std::nullopt;
   }
   return message;
@@ -351,16 +358,19 @@ const std::vector<OwnMessage>& own_messages() {
 
 namespace {
 
+/// Colour; each part in [0, 1].
 struct Colour {
   double r, g, b;
 };
 constexpr Colour kAsphalt{0.33, 0.35, 0.39}, kPaint{0.92, 0.93, 0.95}, kBody{0.15, 0.39, 0.85},
     kCabin{0.11, 0.13, 0.17}, kTire{0.07, 0.07, 0.08};
-constexpr double kLineWidth = 0.25;    // [m]
-constexpr double kPaintHeight = 0.02;  // above the road [m]
+constexpr double kLineWidth = 0.25;  // of an edge's line [m]
+constexpr double kPaintHeight =
+    0.02;  // of edges' lines above the road [m], so that viewers draw them over it
 
+/// Box of the car's body, in `base_link`.
 struct Cube {
-  double x, y, z;                // position of the middle
+  double x, y, z;                // position of the middle [m]
   double length, width, height;  // [m]
   Colour colour;
 };
@@ -379,6 +389,7 @@ void begin_entity(CdrWriter& writer, std::string_view frame_id, std::string_view
   writer.put(std::int32_t{0}, std::uint32_t{0}, is_locked).count(0);  // lifetime for ever, no metadata
 }
 
+/// Writes empty arrays.
 void put_empty(CdrWriter& writer, int arrays) {
   for (int i = 0; i < arrays; ++i) writer.count(0);
 }
@@ -390,7 +401,7 @@ void put_line(CdrWriter& writer, const std::vector<Vec2>& points) {
   put_empty(writer, 2);  // colours, indices
 }
 
-/// The surface between the edges: two triangles for each pair of neighbours.
+/// Writes the surface between the edges: two triangles between each pair of neighbouring points.
 void put_surface(CdrWriter& writer, const RoadLines& road) {
   const std::size_t pairs = std::min(road.left.size(), road.right.size());
   writer.put(0.0, 0.0, 0.0).orientation(0.0);
@@ -416,6 +427,7 @@ void put_road(CdrWriter& writer, const RoadLines& road) {
   put_empty(writer, 2);
 }
 
+/// Body, cabin and wheels of a car. Sizes without a parameter are chosen shares of the wheelbase.
 std::vector<Cube> parts_of(const model::VehicleParams& car) {
   const double wheelbase = car.front_axle + car.rear_axle;
   const double wheel = 0.24 * wheelbase, low = 0.12 * wheelbase, tall = 0.2 * wheelbase;

@@ -18,7 +18,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(" \r") - begin + 1);
 }
 
-/// A comment begins a line, or follows a space.
+/// Line without its comment, which begins the line or follows a space.
 std::string_view without_comment(std::string_view line) {
   for (std::size_t i = 0; i < line.size(); ++i) {
     if (line[i] == '#' && (i == 0 || line[i - 1] == ' ')) return line.substr(0, i);
@@ -26,13 +26,14 @@ std::string_view without_comment(std::string_view line) {
   return line;
 }
 
-/// Something that only a whole YAML parser understands.
+/// Whether a scalar has a meaning that only a whole YAML parser knows: quotes, lists, tags and others.
 bool is_special(std::string_view scalar) {
   constexpr std::string_view kIndicators = "\"'[]{}&*!|>%@`,?-";
   return !scalar.empty() && kIndicators.find(scalar.front()) != std::string_view::npos &&
          !(scalar.front() == '-' && scalar.size() > 1 && scalar[1] != ' ' && scalar[1] != '-');
 }
 
+/// Reader of plain YAML, line by line.
 class PlainReader {
  public:
   explicit PlainReader(const std::string& file) : file_{file} {}
@@ -58,6 +59,7 @@ class PlainReader {
   }
 
  private:
+  /// Map that has not ended.
   struct Open {
     std::size_t indent;
     YamlNode* map;
@@ -75,7 +77,8 @@ class PlainReader {
                                               .children = {}});
   }
 
-  /// A key belongs to the map of its own indentation; deeper than the last one, to that key's.
+  /// Adds a key and its value to the open map of this indentation; begins a map below the last key for a
+  /// deeper one.
   Result<void> place(std::size_t indent, std::string_view key, std::string_view value) {
     while (!open_.empty() && open_.back().indent > indent) open_.pop_back();
     if (open_.empty() || open_.back().indent < indent) {
@@ -100,7 +103,7 @@ class PlainReader {
   const std::string& file_;
   int line_ = 0;
   YamlTree tree_;
-  std::vector<Open> open_;
+  std::vector<Open> open_;       ///< the outermost first
   YamlNode* waiting_ = nullptr;  ///< value of the last key, if its line has none
 };
 

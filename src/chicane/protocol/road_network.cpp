@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Roads in XML, as OpenDRIVE: the reader of elements, and the laying out of reference line and lanes.
+// XML documents, and roads of OpenDRIVE in them: the course along the lanes of connected roads.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@
 namespace chicane::protocol {
 namespace {
 
-/// Visits the elements in the order of the document.
+/// Visitor of all elements in the order of the document.
 template <typename Visit>
 struct Walker : pugi::xml_tree_walker {
   explicit Walker(Visit each) : visit{each} {}
@@ -32,6 +32,7 @@ struct Walker : pugi::xml_tree_walker {
   Visit visit;
 };
 
+/// Line of a position in the text, from 1.
 int line_at(const XmlDocument& xml, std::ptrdiff_t offset) {
   const auto end = std::lower_bound(xml.line_ends.begin(), xml.line_ends.end(), offset);
   return static_cast<int>(end - xml.line_ends.begin()) + 1;
@@ -86,20 +87,21 @@ namespace {
 
 using pugi::xml_node;
 
-constexpr double kMostLength = 100e3;  // [m]
-constexpr double kLeastWidth = 0.5;    // least width of a cross-section [m]
-constexpr double kStep = 0.5;          // step along a reference line [m]
-constexpr double kSpacing = 2.0;       // spacing of the road's points [m]
-constexpr double kReach = 4.0;         // reach of the moving average [m]
-constexpr double kMostJump = 0.1;      // limit of a jump between pieces of a reference line [m]
-constexpr double kMostKink = 0.05;     // [rad]
+// Chosen: a course of cars has these sizes, and files round their numbers.
+constexpr double kMostLength = 100e3;  // [m] of a course
+constexpr double kLeastWidth = 0.5;    // [m] of a cross-section
+constexpr double kStep = 0.5;          // [m] along a reference line
+constexpr double kSpacing = 2.0;       // [m] of the road's points
+constexpr double kReach = 4.0;         // [m] of the moving average, to each side
+constexpr double kMostJump = 0.1;      // [m] between pieces of a reference line
+constexpr double kMostKink = 0.05;     // [rad] between pieces of a reference line
 
-// OpenDRIVE: a reference line of lines, arcs, spirals and polynomials, with lanes on both sides.
+// OpenDRIVE has a reference line of lines, arcs, spirals and polynomials, with lanes on both sides.
 
-/// a + b s + c s² + d s³ from a place on.
+/// Polynomial a + b u + c u² + d u³ of u = s − from.
 struct Cubic {
-  double from = 0.0;
-  std::array<double, 4> factors{};
+  double from = 0.0;                ///< where it begins [m]
+  std::array<double, 4> factors{};  ///< a to d
   [[nodiscard]] double at(double s) const {
     const double u = s - from;
     return factors[0] + u * (factors[1] + u * (factors[2] + u * factors[3]));
@@ -110,13 +112,14 @@ struct Cubic {
   }
 };
 
+/// Polynomial of an element, with these names of its factors.
 Cubic cubic_of(xml_node node, double from, std::array<const char*, 4> names = {"a", "b", "c", "d"}) {
   Cubic cubic{from, {}};
   for (std::size_t i = 0; i < names.size(); ++i) cubic.factors[i] = number_at(node, names[i]);
   return cubic;
 }
 
-/// The last piece that begins at or before s, else the last one; null where there is none.
+/// Last piece that begins at or before s; the first piece for an s before all; null if there is none.
 template <typename Piece>
 const Piece* last_at(const std::vector<Piece>& pieces, double s) {
   const Piece* found = nullptr;
@@ -124,22 +127,25 @@ const Piece* last_at(const std::vector<Piece>& pieces, double s) {
     if (piece.from <= s + 1e-9 || found == nullptr) found = &piece;
   return found;
 }
+/// Value of a piecewise polynomial at s; 0 without pieces.
 double value_at(const std::vector<Cubic>& pieces, double s) {
   const Cubic* const piece = last_at(pieces, s);
   return piece != nullptr ? piece->at(s) : 0.0;
 }
 
+/// Lane of a section.
 struct Lane {
-  int id = 0;
-  bool is_driven = false;
+  int id = 0;  ///< from the reference line outwards: 1, 2, … to the left, −1, −2, … to the right
+  bool is_driven = false;  ///< a lane to drive on
   std::vector<Cubic> width;
 };
+/// Cross-section of lanes from one arc length on.
 struct LaneSection {
-  double from = 0.0;
+  double from = 0.0;        ///< [m]
   std::vector<Lane> lanes;  ///< the inner ones first, left ones before right ones
 };
 
-/// Heading and place along one geometry element.
+/// Piece of a reference line: position and heading along one geometry element.
 class Geometry {
  public:
   explicit Geometry(xml_node node)
@@ -159,6 +165,7 @@ class Geometry {
       across_ = cubic_of(poly3, 0.0);
     }
   }
+  /// Whether all numbers are there and in range.
   [[nodiscard]] bool is_sound() const {
     return place_.is_finite() && std::fabs(place_.x()) < 1e7 && std::fabs(place_.y()) < 1e7 &&
            std::isfinite(heading_) && length_ >= 0.0 && length_ < kMostLength && std::fabs(begin_) < 10.0 &&
@@ -166,7 +173,7 @@ class Geometry {
   }
   [[nodiscard]] double length() const { return length_; }
 
-  /// Place and heading at `count` + 1 evenly spaced lengths.
+  /// Position and heading at `count` + 1 evenly spaced arc lengths.
   [[nodiscard]] std::vector<std::pair<Vec2, double>> sampled(int count) const {
     std::vector<std::pair<Vec2, double>> samples;
     Vec2 at = place_;
@@ -200,10 +207,12 @@ class Geometry {
     return {place_ + Vec2{c * u - si * v, si * u + c * v}, heading_ + atan2(across_->slope_at(p), du)};
   }
 
-  Vec2 place_{};
-  double heading_ = 0.0, length_ = 0.0, begin_ = 0.0, end_ = 0.0;
-  std::optional<Cubic> across_, along_;  ///< polynomials; without along_ it is s itself
-  bool is_normalised_ = false;
+  Vec2 place_{};                         ///< beginning [m]
+  double heading_ = 0.0, length_ = 0.0;  ///< at the beginning [rad], and [m]
+  double begin_ = 0.0, end_ = 0.0;       ///< curvature at both ends [1/m]; linear between
+  std::optional<Cubic> across_,
+      along_;                   ///< polynomials v and u in the frame of the beginning; without along_ u = s
+  bool is_normalised_ = false;  ///< their argument goes from 0 to 1, not to length_
 };
 
 std::vector<LaneSection> sections_of(xml_node lanes) {
@@ -227,8 +236,8 @@ std::vector<LaneSection> sections_of(xml_node lanes) {
   return sections;
 }
 
-/// Range across the road from the outer edge of the rightmost driven lane to the leftmost one's, left
-/// positive [m].
+/// Offsets of both edges of the driven lanes from the reference line, the right edge first, left positive
+/// [m]; none without a driven lane of a plausible width.
 std::optional<std::pair<double, double>> driven_at(const std::vector<LaneSection>& sections,
                                                    const std::vector<Cubic>& offsets, double s) {
   const LaneSection* const section = last_at(sections, s);
@@ -250,7 +259,7 @@ std::optional<std::pair<double, double>> driven_at(const std::vector<LaneSection
                                                                    : std::nullopt;
 }
 
-/// Whether a piece begins where and as the one before ends.
+/// Adds a fault if a piece does not begin with the position and heading of the end before.
 void check_joint(const std::pair<Vec2, double>& end, const std::pair<Vec2, double>& begin, double s,
                  const std::string& road, int line, RoadRows& rows) {
   const double jump = (begin.first - end.first).norm();
@@ -262,7 +271,7 @@ void check_joint(const std::pair<Vec2, double>& end, const std::pair<Vec2, doubl
              fmt::format("pieces that join within {} m and {} rad", kMostJump, kMostKink));
 }
 
-/// Points in the middle of a road's lanes, in its direction or against it.
+/// Adds points in the middle of a road's driven lanes, in its direction or against it.
 void lay_out(const XmlDocument& xml, xml_node road, bool is_forward, RoadRows& rows) {
   const xml_node plan = road.child("planView"), lanes = road.child("lanes");
   if (!plan || !lanes) return rows.fault(xml.line_of(road), "road", "no planView and lanes", "both");
@@ -313,9 +322,9 @@ void lay_out(const XmlDocument& xml, xml_node road, bool is_forward, RoadRows& r
   }
 }
 
-/// Smooths a line: every kSpacing the mean place within kReach, weighted by a triangle. Where an arc meets a
-/// straight the curvature rises along twice the reach, and an arc of radius R moves inwards by kReach² / 12
-/// R. Edges stay.
+/// Smooths a line: a point every kSpacing, which is the mean of the points within kReach, weighted by a
+/// triangle. Where an arc meets a straight, the curvature rises along twice the reach. An arc of radius R
+/// moves inwards by kReach² / (12 R). The edges stay where they were.
 std::vector<road::TrackPoint> eased(const std::vector<road::TrackPoint>& points, bool closed) {
   const auto n = static_cast<std::ptrdiff_t>(points.size());
   const auto at = [&](std::ptrdiff_t i) -> const Vec2& {
@@ -346,7 +355,7 @@ std::vector<road::TrackPoint> eased(const std::vector<road::TrackPoint>& points,
     }
     if (weights > 0.0) {
       const Vec2 moved = sum / weights - point.position, chord = at(i + 1) - at(i - 1);
-      const double offset = (chord.x() * moved.y() - chord.y() * moved.x()) / std::max(chord.norm(), 1e-12);
+      const double offset = chord.cross(moved) / std::max(chord.norm(), 1e-12);
       point = {point.position + moved, point.left - offset, point.right + offset};
     }
     result.push_back(point);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Topics of a run in ROS 2's standard types, their definitions, and the list of all topics.
+// Topics of a run in ROS 2's standard types, definitions of all types, services, and values of parameters.
 #include "chicane/protocol/ros_messages.hpp"
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@
 namespace chicane::protocol {
 namespace {
 
-/// Definition of one message type in ROS 2's .msg language, with none of the definitions it refers to.
+/// Definition of one message type in ROS 2's .msg language, without those of the types in it.
 struct RosDefinition {
   std::string_view name;  ///< "nav_msgs/Odometry"
   std::string_view text;
@@ -136,7 +136,7 @@ using telemetry::Frame;
 
 double or_zero(double value) { return std::isfinite(value) ? value : 0.0; }
 
-/// The middle of the rear axle, in W.
+/// Pose of the middle of the rear axle, in W.
 model::Pose base_link(const model::State& state, const Run& run) {
   const double b = run.vehicle.rear_axle;
   return {state.x - b * chicane::cos(state.psi), state.y - b * chicane::sin(state.psi), state.psi};
@@ -196,6 +196,7 @@ std::string encode_clock(const Frame& frame, const Run&) {
   return encode(ClockMessage{nanoseconds(frame.time)});
 }
 
+/// Level and message of a diagnostic_msgs/DiagnosticStatus.
 struct Diagnosis {
   std::uint8_t level;  ///< 0 fine, 1 warning, 2 error, 3 unknown
   std::string message;
@@ -271,7 +272,7 @@ RosDefinition definition_of(std::string_view name) {
   return {};
 }
 
-/// Appends the names that a definition refers to, each once, in order of appearance, depth first.
+/// Appends the definitions of the types in a definition, each once, in order of appearance, depth first.
 void collect(const RosDefinition& definition, std::vector<RosDefinition>& found) {
   for (std::size_t begin = 0; begin < definition.text.size();) {
     const std::size_t end = definition.text.find('\n', begin);
@@ -286,7 +287,7 @@ void collect(const RosDefinition& definition, std::vector<RosDefinition>& found)
   }
 }
 
-/// Topic; without `encode` one of our own messages.
+/// Topic of a standard type, which `encode` writes, or of a type of chicane_msgs.
 RosTopic topic(std::string_view name, std::string_view type, Cadence cadence,
                std::string (*encode)(const Frame&, const Run&) = nullptr) {
   const OwnMessage* own = find_own(short_name(type));
@@ -416,7 +417,7 @@ Type type_of(const Setting& parameter) {
 
 std::uint8_t type_number(const Setting& parameter) { return static_cast<std::uint8_t>(type_of(parameter)); }
 
-/// rcl_interfaces/msg/ParameterValue: a field for each kind of value; the first number selects the valid one.
+/// Writes rcl_interfaces/msg/ParameterValue: a type, and a field for each type, of which that one is valid.
 void value_fields(WritingArchive& archive, const Setting& parameter) {
   const Type type = type_of(parameter);
   const auto* number = std::get_if<double>(&parameter.value);
@@ -459,7 +460,7 @@ void value_fields(ReadingArchive& archive, Setting& parameter) {
   }
 }
 
-/// rcl_interfaces/msg/ParameterDescriptor.
+/// Writes rcl_interfaces/msg/ParameterDescriptor.
 void descriptor_fields(WritingArchive& archive, const Setting& parameter) {
   const Type type = type_of(parameter);
   const auto* row = find(parameter.name);

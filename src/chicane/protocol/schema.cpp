@@ -21,7 +21,7 @@ namespace {
 using scenario::Scenario;
 using S = Scenario;
 
-/// The run itself.
+/// Rows of the scenario's own fields.
 auto run_options() {
   return std::array{
       option<&S::preset>("preset", "Named controller settings this run starts from."),
@@ -54,11 +54,12 @@ auto run_options() {
   };
 }
 
-/// All rows, and the keys they point to.
+/// Rows with their keys.
 struct Table {
-  std::deque<std::string> keys;
+  std::deque<std::string> keys;  ///< texts of Parameter::key
   std::vector<Parameter> rows;
 
+  /// Adds the options of a struct that `owner` finds in a scenario.
   void add(std::string_view group, std::string_view of_controller, std::span<const Option> options,
            void* (*owner)(Scenario&)) {
     for (const Option& option : options) {
@@ -85,6 +86,7 @@ Table make_table() {
   return table;
 }
 
+/// Struct of a scenario that has the field of a row, for reading.
 void* owner_of(const Scenario& scenario, const Parameter& parameter) {
   return parameter.owner(const_cast<Scenario&>(scenario));  // read only through the result
 }
@@ -96,6 +98,7 @@ Result<double> parse_number(const Parameter& parameter, std::string_view text) {
   return fail(refusal(parameter.key, printable(text), parameter.option));
 }
 
+/// Levenshtein distance: number of letters to insert, remove or replace.
 int edit_distance(std::string_view a, std::string_view b) {
   std::vector<int> row(b.size() + 1);
   std::iota(row.begin(), row.end(), 0);
@@ -149,14 +152,16 @@ const Parameter* find_option(std::string_view controller, std::string_view name)
 
 std::string_view nearest(std::string_view word, std::span<const std::string_view> known) {
   std::string_view best;
-  if (word.size() > 100) return best;
-  // Two changes make any short word of any other.
+  constexpr std::size_t kLongest = 100;  // [byte] chosen: bounds the time; no key is longer
+  if (word.size() > kLongest) return best;
+  // Accepts fewer changes than this: a quarter of the letters; one in short words, which two changes turn
+  // into any other.
   int best_distance = word.size() < 5 ? 2 : std::max(2, static_cast<int>(word.size()) / 4) + 1;
   for (const std::string_view candidate : known) {
-    const bool unit_forgotten = candidate.starts_with(word) && candidate.size() > word.size() &&
-                                (candidate[word.size()] == '_' || candidate[word.size()] == '-');
+    const bool lacks_suffix = candidate.starts_with(word) && candidate.size() > word.size() &&
+                              (candidate[word.size()] == '_' || candidate[word.size()] == '-');
     const bool is_swapped = std::is_permutation(word.begin(), word.end(), candidate.begin(), candidate.end());
-    const int distance = unit_forgotten ? 0 : is_swapped ? 1 : edit_distance(word, candidate);
+    const int distance = lacks_suffix ? 0 : is_swapped ? 1 : edit_distance(word, candidate);
     if (distance < best_distance) std::tie(best, best_distance) = std::pair{candidate, distance};
   }
   return best;
@@ -178,7 +183,7 @@ std::string suggestion(std::string_view key, std::string_view driver) {
   const auto name_of = [](std::string_view each) { return each.substr(each.rfind('.') + 1); };
   for (const auto* keys : {&in_use, &others}) {
     std::string_view best = nearest(key, *keys);
-    if (best.empty()) {  // the right name, or almost, in the wrong group or without one
+    if (best.empty()) {  // a similar name in another group
       std::vector<std::string_view> names;
       for (const std::string_view known : *keys) names.push_back(name_of(known));
       const std::string_view name = nearest(name_of(key), names);
@@ -240,7 +245,7 @@ std::string get_text(const Scenario& scenario, const Parameter& parameter) {
   const Option& option = parameter.option;
   if (option.kind != Kind::kNumber) return text_of(value);
   const double number = std::get<double>(value);
-  // Prefer few digits, as people write them, if they give the same bits.
+  // Prefers 15 digits, which give numbers as people write them, if they have the same bits.
   const std::string rounded = fmt::format("{:.15g}", number);
   const double read = number_in(rounded).value_or(0.0);
   const Value inside = option.read(owner_of(scenario, parameter));

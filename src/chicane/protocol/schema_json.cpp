@@ -43,7 +43,7 @@ Json to_json(const Value& value) {
   return std::isfinite(number) ? Json(number) : Json("inf");
 }
 
-/// Kinds without a range have none in JSON either.
+/// Setting or control as JSON. Kinds without a range have null as their bounds.
 Json entry(std::string_view key, const Option& option, const Value& initial) {
   const bool has_range = option.kind == Kind::kNumber || option.kind == Kind::kInteger;
   return {{"key", key},
@@ -58,7 +58,7 @@ Json entry(std::string_view key, const Option& option, const Value& initial) {
           {"meaning", option.meaning}};
 }
 
-/// Place of a fault in the loop.
+/// Part of the control loop that a fault disturbs.
 std::string_view place_of(const sim::FaultKind& kind) {
   if (kind.deadline_questions != nullptr) return "computer";
   if (kind.grip != nullptr || kind.side_acceleration != nullptr) return "road";
@@ -67,6 +67,7 @@ std::string_view place_of(const sim::FaultKind& kind) {
   return kind.place == sim::FaultPlace::kLink ? "link" : "sensor";
 }
 
+/// Kind of a fault as JSON.
 Json described(const sim::FaultKind& kind) {
   Json json{{"group", place_of(kind)}, {"duration_s", kind.duration}};
   json["strength_meaning"] = kind.strength_meaning;
@@ -121,9 +122,9 @@ std::string schema_json(const scenario::Scenario& defaults, const scenario::Scen
 
 namespace {
 
-constexpr double kLongest = 1e6;  // [s]
+constexpr double kLongest = 1e6;  // [s] limit of a fault's times; chosen: longer than any run
 
-/// The number in [low, high] that `text` is; `otherwise` where it is empty.
+/// Number in [low, high] written by `text`; `otherwise` for an empty text.
 Result<double> read(std::string_view key, std::string_view text, double low, double high, double otherwise) {
   return text.empty() ? otherwise : number_in(key, text, low, high);
 }

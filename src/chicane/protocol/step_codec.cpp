@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Message of a control step: its rows, from which definition, writer and reader are made.
 #include "chicane/protocol/step_codec.hpp"
 
 #include "chicane/protocol/detail/own_messages.hpp"
@@ -6,7 +7,7 @@
 namespace chicane::protocol {
 namespace {
 
-/// A step as its message has it.
+/// Fields of the message.
 struct StepMessage {
   Step step{};
   std::int8_t rung = 0;

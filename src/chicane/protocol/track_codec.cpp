@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// List of formats of road files, choice of the format by content and name, and making of roads from files.
 #include "chicane/protocol/track_codec.hpp"
 
 #include <fmt/format.h>
@@ -13,7 +14,7 @@
 namespace chicane::protocol {
 namespace {
 
-/// A new format is a line here and its include.
+/// Formats by extension. A new format is a line here and its include.
 constexpr std::array kFormats{
     kCsvTrack,
 };
@@ -24,7 +25,7 @@ constexpr auto kExtensions = [] {
   return extensions;
 }();
 
-/// Message of Track::create, "points[57]: …", with the line of that point in the file.
+/// Message of Track::create, "points[57]: …", after the file and the line of that point.
 std::string with_line(const std::string& message, const TrackFile& content) {
   constexpr std::string_view kPrefix = "points[";
   std::size_t index = 0;

@@ -20,12 +20,12 @@
 namespace chicane::protocol {
 namespace {
 
-constexpr double kSteerUnit =
-    degrees_to_radians(25.0);                 // wheel angle at ±1 (CarController.cs, m_MaximumSteerAngle)
-constexpr double kMilesPerHour = 2.23693629;  // CarController.cs, CurrentSpeed
-constexpr std::size_t kMaxWords = 80;         // limit of received text in our messages [byte]
+// Wheel angle at a steering command of ±1 [rad] (CarController.cs, m_MaximumSteerAngle).
+constexpr double kSteerUnit = degrees_to_radians(25.0);
+constexpr double kMilesPerHour = 2.23693629;  // mph in 1 m/s (CarController.cs, CurrentSpeed)
+constexpr std::size_t kMaxWords = 80;         // [byte] limit of received text in messages; chosen: one line
 
-/// Allowed range of a number in telemetry: wide enough for any world, narrow enough for arithmetic.
+/// Allowed range of a number in messages. Chosen: wide enough for any world, narrow enough for arithmetic.
 struct Range {
   double low;
   double high;
@@ -39,9 +39,9 @@ constexpr Range kThrottle{-1.0, 1.0};
 /// Allowed ranges of a stop plan's point: after_s, distance_m, speed_mps, steering_angle, throttle.
 constexpr std::array<Range, 5> kStopPoint{
     Range{0.0, 60.0}, {0.0, 1e4}, {0.0, 450.0}, {-1.0, 1.0}, {-1.0, 1.0}};
-constexpr Range kStopBegins{0.0, 5.0};  // [s] later is no stop
+constexpr Range kStopBegins{0.0, 5.0};  // [s] of the first point; chosen: a later stop would be none
 
-/// A received value for an error message: short, printable, valid UTF-8.
+/// Received value for an error message: short, printable, valid UTF-8.
 std::string shown(const Json& value) {
   if (value.is_discarded()) return "nothing";
   if (value.is_array()) return fmt::format("an array of {}", value.size());
@@ -57,7 +57,7 @@ UdacityBroken unexpected(std::string_view field, const Json& value, std::string_
   return {fmt::format("{}: got {}, expected {}", field, shown(value), expected)};
 }
 
-/// A machine with a decimal comma prints `"x":-40,62`: a number after a key, then a comma and a digit.
+/// Whether a text has decimal commas, `"x":-40,62`: a number after a key, then a comma and a digit.
 bool has_decimal_comma(std::string_view text) {
   const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
   for (std::size_t i = text.find("\":"); i != std::string_view::npos; i = text.find("\":", i + 1)) {
@@ -108,12 +108,13 @@ std::string bare_word(std::string_view text) {
   return "";
 }
 
+/// Event of Socket.IO.
 struct Event {
   std::string name;
   Json payload;  // discarded when there is none
 };
 
-/// `["name",payload]`, after the packet digits and an optional acknowledgement number.
+/// Parses `["name",payload]`, after the packet digits and an optional acknowledgement number.
 tl::expected<Event, UdacityBroken> parse_event(std::string_view text) {
   const std::size_t start = text.find_first_not_of("0123456789");
   if (start == std::string_view::npos || text[start] != '[')
@@ -138,7 +139,7 @@ tl::expected<Event, UdacityBroken> parse_event(std::string_view text) {
   return event;
 }
 
-/// Everything that is not an event; nullopt for an event.
+/// Parses a packet that is no event; nullopt for an event.
 std::optional<std::variant<UdacityPacket, UdacityBroken>> parse_packet(std::string_view text) {
   if (text.size() > kMaxUdacityMessage) {
     return UdacityBroken{fmt::format("{} bytes, expected at most {}", text.size(), kMaxUdacityMessage),
@@ -189,17 +190,18 @@ std::optional<UdacityForeign> foreign_scene(const Json& data) {
   return std::nullopt;
 }
 
-/// Reads numbers out of an object and remembers the first that is not as it should be.
+/// Reader of the numbers of an object. Stores the first fault.
 class FieldReader {
  public:
   explicit FieldReader(const Json& data) : data_{data} {}
 
+  /// Number of a field; 0 after a fault.
   double number(const std::string& key, const Range& range) {
     const Json* value = find(key);
     return value == nullptr ? 0.0 : checked(key, *value, range);
   }
 
-  /// The numbers of an array of at most `capacity`.
+  /// Numbers of an array of at most `capacity`.
   std::vector<double> numbers(const char* key, std::size_t capacity, const Range& range) {
     const Json* value = find(key);
     if (value == nullptr) return {};
@@ -215,8 +217,8 @@ class FieldReader {
     return result;
   }
 
-  /// A line whose points the original reads one by one out of two lists, *_y at every index of *_x. What is
-  /// no list has no points there, whatever it is; an object counts as the list of its values.
+  /// Line of two lists, read as the original does: point by point, *_y at each index of *_x. A value that is
+  /// no list has no points; an object counts as the list of its values.
   std::vector<Vec2> line(const char* x_key, const char* y_key, const Range& range) {
     std::vector<Vec2> points;
     const Json* xs = find(x_key);
@@ -238,7 +240,7 @@ class FieldReader {
     return points;
   }
 
-  /// The rows of a table of at most `capacity`; none when there is no such field.
+  /// Rows of a table of at most `capacity`; empty if there is no such field.
   template <std::size_t kColumns>
   std::vector<std::array<double, kColumns>> rows(const char* key, std::size_t capacity,
                                                  const std::array<Range, kColumns>& ranges) {
@@ -276,6 +278,7 @@ class FieldReader {
     return nullptr;
   }
 
+  /// The value if it is a number in range; else 0 and a fault.
   double checked(std::string_view key, const Json& value, const Range& range) {
     if (!value.is_number()) {
       refuse(unexpected(key, value, "a number"));
@@ -288,7 +291,7 @@ class FieldReader {
   }
 
   const Json& data_;
-  std::optional<UdacityBroken> broken_;
+  std::optional<UdacityBroken> broken_;  ///< first fault
 };
 
 UdacityTelemetry read_measurement(const Json& data, const std::string& time_field) {
@@ -311,12 +314,13 @@ UdacityTelemetry read_measurement(const Json& data, const std::string& time_fiel
   return measurement;
 }
 
-/// `[x0,x1,…]` and `[y0,y1,…]` of a line, seen from `pose`.
+/// Texts `[x0,x1,…]` and `[y0,y1,…]` of a line.
 struct LineText {
   std::string x = "[";
   std::string y = "[";
 };
 
+/// Texts of a line of `size` points, in the frame of `pose`.
 template <class PointAt>
 LineText encode_line(int size, const model::Pose& pose, PointAt point_at) {
   LineText line;
@@ -339,13 +343,13 @@ LineText encode_line(int size, const model::Pose& pose, PointAt point_at) {
   return line;
 }
 
-/// Finite and inside [-1, 1], and never "-0".
+/// Finite value in [-1, 1] that never prints as "-0".
 double normalised(double value) {
   CHICANE_ASSERT(std::isfinite(value));
   return std::isfinite(value) ? std::clamp(value, -1.0, 1.0) + 0.0 : 0.0;
 }
 
-/// A stop plan of the reply; times count from when the telemetry was sampled.
+/// Stop plan of a reply.
 safety::StopPlan read_stop(FieldReader& fields) {
   constexpr const char* kKey = "stop_plan";
   const auto rows = fields.rows(kKey, kMaxUdacityStop, kStopPoint);
@@ -365,14 +369,14 @@ safety::StopPlan read_stop(FieldReader& fields) {
   return stop;
 }
 
-/// `"stop_plan":[…],`, or nothing.
+/// Field `"stop_plan":[…],` of a reply; empty without a plan.
 std::string encode_stop(const safety::StopPlan& stop, double sampled) {
   const int size = std::clamp(stop.size, 0, safety::StopPlan::kCapacity);
   const int sent = std::min(size, kMaxUdacityStop);
   const auto rounded = [](double value, double unit) { return std::round(value / unit) * unit + 0.0; };
   std::string text;
   for (int k = 0; k < sent; ++k) {
-    const int i = sent < 2 ? 0 : k * (size - 1) / (sent - 1);  // the first and the last among them
+    const int i = sent < 2 ? 0 : k * (size - 1) / (sent - 1);  // includes the first and the last
     const safety::StopPoint& point = stop.points[static_cast<std::size_t>(i)];
     const std::array numbers{point.time - sampled, point.distance, point.speed,
                              -point.command.steer / kSteerUnit, point.command.throttle};

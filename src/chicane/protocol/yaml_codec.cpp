@@ -15,7 +15,7 @@
 namespace chicane::protocol {
 namespace {
 
-constexpr int kMostNodes = 10000;  // limit of settings in a file, aliases followed
+constexpr int kMostNodes = 10000;  // limit of settings in a file, aliases followed; chosen: bounds the time
 constexpr int kMostDepth = static_cast<int>(YamlTree::kMostDepth);
 
 /// Words as a list: "name, about or keep".
@@ -26,7 +26,7 @@ std::string alternatives(const std::vector<std::string_view>& words) {
   return text;
 }
 
-/// Walks the nodes of one file and collects settings and faults.
+/// Reader of one file of settings.
 class Reader : private YamlReader {
  public:
   explicit Reader(const std::string& file) : YamlReader{file} { document_.file = file; }
@@ -46,6 +46,7 @@ class Reader : private YamlReader {
   }
 
  private:
+  /// Reads a map of settings, whose keys have `prefix` before them.
   void read_settings(const YamlNode& map, const std::string& prefix, int depth) {
     for (const YamlEntry& entry : map.entries()) {
       if (++nodes_ == kMostNodes)
@@ -129,10 +130,11 @@ class Reader : private YamlReader {
   }
 
   Document document_;
-  std::map<std::string, int> lines_;  // line on which each key was first seen
-  int nodes_ = 0;
+  std::map<std::string, int> lines_;  ///< line on which each key was first seen
+  int nodes_ = 0;                     ///< nodes read so far
 };
 
+/// Value of a setting as YAML.
 std::string yaml_text(const Parameter& parameter, const scenario::Scenario& scenario) {
   const std::string text = get_text(scenario, parameter);
   if (parameter.option.kind != Kind::kText) return text == "inf" ? ".inf" : text;
@@ -176,7 +178,7 @@ void derive_model(std::span<const Document> layers, scenario::Scenario& scenario
   for (const Document& layer : layers) {
     for (const Assignment& assignment : layer.assignments) {
       const Parameter& row = *assignment.parameter;
-      // A value out of range is refused below, with its place.
+      // Faults are ignored here: apply_layers() reports them with their position.
       if (row.key == "plant" || row.group == "plant_params")
         static_cast<void>(set(plant, row, assignment.value));
     }
@@ -185,11 +187,12 @@ void derive_model(std::span<const Document> layers, scenario::Scenario& scenario
     scenario.vehicle = sim::model_of(plant.plant_params, scenario.vehicle);
 }
 
-/// Scenario of the settings that a file need not name: defaults, and the model derived from the plant.
-scenario::Scenario silent(const scenario::Scenario& of) {
-  scenario::Scenario silent;
-  if (of.plant == sim::DoubleTrack::kName) silent.vehicle = sim::model_of(of.plant_params, silent.vehicle);
-  return silent;
+/// Settings that a file of `scenario` leaves out: defaults, and the vehicle model derived from the plant.
+scenario::Scenario implied_settings(const scenario::Scenario& scenario) {
+  scenario::Scenario implied;
+  if (scenario.plant == sim::DoubleTrack::kName)
+    implied.vehicle = sim::model_of(scenario.plant_params, implied.vehicle);
+  return implied;
 }
 
 }  // namespace
@@ -324,7 +327,7 @@ Result<void> apply_layers(std::span<const Document> layers, scenario::Scenario& 
 }
 
 std::string write_document(const scenario::Scenario& scenario, std::string_view description, bool is_whole) {
-  const scenario::Scenario defaults = silent(scenario);
+  const scenario::Scenario defaults = implied_settings(scenario);
   const std::string text = write(scenario, description, [&](const Parameter& parameter) {
     return parameter.key != "preset" && (is_whole || get(scenario, parameter) != get(defaults, parameter));
   });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The only file that includes yaml-cpp.
+// Parser of YAML over yaml-cpp, which no other file includes: checks the bytes, and builds the tree from
+// events.
 #include "chicane/protocol/yaml_tree.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +18,7 @@ namespace {
 
 using Kind = YamlNode::Kind;
 
-constexpr std::size_t kMostBytes = 256U << 10U;  // [byte]
+constexpr std::size_t kMostBytes = 256U << 10U;  // [byte] of a file; chosen: far more than all settings take
 
 /// Checks on the bytes before a YAML parser gets them.
 Result<void> check_bytes(std::string_view text, const std::string& file) {
@@ -52,6 +53,7 @@ struct Refusal {
   std::string what;
 };
 
+/// Builder of the tree from the events of yaml-cpp.
 class TreeBuilder final : public YAML::EventHandler {
  public:
   explicit TreeBuilder(std::string_view text) : text_{text} {}
@@ -63,7 +65,8 @@ class TreeBuilder final : public YAML::EventHandler {
 
   void OnDocumentStart(const YAML::Mark& mark) override {
     if (++documents_ == 1) return;
-    // yaml-cpp 0.7 does not step over a comma between documents: there, it would find empty ones without end.
+    // yaml-cpp 0.7 does not advance over a comma between documents, and would find empty documents without
+    // end.
     const auto at = static_cast<std::size_t>(mark.pos);
     if (at < text_.size() && text_[at] == ',')
       throw Refusal{mark.line + 1, "text: got a comma outside of a list, expected valid YAML"};
@@ -96,6 +99,7 @@ class TreeBuilder final : public YAML::EventHandler {
   void OnMapEnd() override { close(); }
 
  private:
+  /// List or map that has not ended.
   struct Open {
     YamlNode* node;
     YAML::anchor_t anchor;
@@ -131,7 +135,7 @@ class TreeBuilder final : public YAML::EventHandler {
     note(open_.back().anchor, open_.back().node);
     open_.pop_back();
   }
-  /// Registers a complete node: an alias inside it would make a circle.
+  /// Stores the anchor of a node that has ended: an alias within its own node would make a circle.
   void note(YAML::anchor_t anchor, const YamlNode* node) {
     if (anchor != 0) anchors_[anchor] = node;
   }
@@ -152,8 +156,8 @@ Result<YamlTree> parse_yaml(std::string_view text, const std::string& file) {
     return fail(ErrorCode::kParse, fmt::format("{}:{}: {}", file, line, what));
   };
   try {
-    // yaml-cpp 0.7 takes a quote that is open at a line break before the end of the file for closed: let no
-    // file end there.
+    // The added line is a comment: yaml-cpp 0.7 takes an open quote for closed at a line break that ends the
+    // file.
     std::istringstream stream(std::string(text) + "\n#");
     YAML::Parser parser(stream);
     TreeBuilder builder(text);

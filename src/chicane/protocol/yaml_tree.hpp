@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// YAML documents as trees of nodes, and the two parsers that make them.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +15,7 @@ namespace chicane::protocol {
 
 struct YamlEntry;
 
-/// One node of a YAML document.
+/// Node of a YAML document.
 struct YamlNode {
   enum class Kind : std::uint8_t { kNothing, kScalar, kList, kMap };
 
@@ -31,6 +32,7 @@ struct YamlNode {
   [[nodiscard]] std::vector<YamlEntry> entries() const;
 };
 
+/// Key and value of a map.
 struct YamlEntry {
   const YamlNode& key;
   const YamlNode& value;
@@ -44,26 +46,28 @@ inline std::vector<YamlEntry> YamlNode::entries() const {
   return all;
 }
 
-/// The nodes of one document. An alias is the node it refers to, so that walkers must count their steps.
+/// Nodes of one document. An alias is the node that it refers to: a walk over the tree can meet a node many
+/// times, and must count its steps.
 struct YamlTree {
   /// Limit of nodes in one document, aliases not followed.
   static constexpr std::size_t kMostNodes = 50000;
+  /// Limit of nesting.
   static constexpr std::size_t kMostDepth = 8;
 
-  std::deque<YamlNode> nodes;      ///< addresses stay
-  const YamlNode* root = nullptr;  ///< an empty file's: kNothing
+  std::deque<YamlNode> nodes;      ///< a deque, in which addresses do not change
+  const YamlNode* root = nullptr;  ///< kNothing for an empty file
 };
 
 /// Parses one document of at most 256 KiB event by event: memory and time are proportional to the text and
-/// end at the limits above (docs/decisions/0016-yaml-by-events.md). kParse, "FILE:LINE: …", for text that is
-/// not YAML or not UTF-8, indented by tabs, several documents, deeper nesting, more nodes, an alias of
-/// nothing or of its own parent.
+/// bounded by the limits of YamlTree (docs/decisions/0016-yaml-by-events.md). Fails with kParse, "FILE:LINE:
+/// …", for text that is not YAML or not UTF-8, indentation by tabs, several documents, deeper nesting, more
+/// nodes, an alias of nothing or of its own parent.
 [[nodiscard]] Result<YamlTree> parse_yaml(std::string_view text, const std::string& file);
 
 /// Parses the subset of YAML in shipped presets and cars: maps of plain scalars, nested by spaces, with
-/// comments. Gives the tree that parse_yaml() gives. For builds without yaml-cpp (apps/page): its files are
-/// our own, so that this is a check and no defence. kParse, "FILE:LINE: ...", for everything else that YAML
-/// has: lists, quotes, braces, tags, anchors, several documents, tabs.
+/// comments. The tree equals that of parse_yaml(). For builds without yaml-cpp (apps/page), which read
+/// shipped files alone: no defence against others. Fails with kParse, "FILE:LINE: ...", for everything
+/// else that YAML has: lists, quotes, braces, tags, anchors, several documents, tabs.
 [[nodiscard]] Result<YamlTree> parse_plain_yaml(std::string_view text, const std::string& file);
 
 }  // namespace chicane::protocol

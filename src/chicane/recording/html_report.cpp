@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Report page: recordings thinned to what a screen shows, as one JSON document inside the bundle of the web
-// viewer.
+// Report page: recordings, thinned to what a screen shows, as one JSON document in the page of the dashboard.
 #include "chicane/recording/html_report.hpp"
 
 #include <fmt/format.h>
@@ -24,14 +23,14 @@ namespace {
 using protocol::Json;
 using namespace std::string_view_literals;
 
-constexpr std::array kRates{20.0, 10.0, 5.0, 2.0, 1.0};  // [Hz]
-// Significant digits: of whole messages, whose lap times are rounded again for display, and of drawn values.
+// Chosen.
+constexpr std::array kRates{20.0, 10.0, 5.0, 2.0, 1.0};  // [Hz] rates of kept control steps, tried in turn
+// Significant digits of whole messages, whose lap times the page rounds again, and of drawn values.
 constexpr int kExact = 9, kDrawn = 6;
 
-// Messages that are in the page as they are.
+// Topics whose messages are in the page whole.
 constexpr std::array kWhole{"/chicane/run"sv, "/chicane/lap"sv, "/chicane/change"sv, "/chicane/limit"sv};
-// Columns of control steps: values drawn along a lap, and values whose change ends a stretch that may be
-// thinned.
+// Fields of control steps that the page draws.
 constexpr std::array<const char*, 22> kColumns{"time_s",
                                                "lap",
                                                "lap_time_s",
@@ -54,10 +53,11 @@ constexpr std::array<const char*, 22> kColumns{"time_s",
                                                "rung",
                                                "is_gated",
                                                "active_faults"};
+// Fields whose changes are kept: a step in which one of them changes is never left out.
 constexpr std::array kKept{"lap"sv, "rung"sv, "is_gated"sv, "active_faults"sv, "off_track_events"sv};
 
-// The dashboard's files are gzip-compressed in the program, and stay so in the page: every browser unpacks
-// them. Base64 has no character that means anything in HTML.
+// Beginning and end of the page. The dashboard's files stay gzip-compressed, because every browser can unpack
+// them, and are in base64, which has no character with a meaning in HTML.
 constexpr std::string_view kHead = R"(<!doctype html>
 <html lang="en">
 <head>
@@ -98,6 +98,7 @@ constexpr std::string_view kStart = R"(<script>
 </html>
 )";
 
+/// Number rounded to significant digits; null if it is not finite.
 Json json_of(double value, int digits) {
   return std::isfinite(value) ? Json(std::stod(fmt::format("{:.{}g}", value, digits))) : Json(nullptr);
 }
@@ -108,7 +109,7 @@ Json json_of(const std::vector<double>& values, int digits) {
   return list;
 }
 
-/// A message as lists, one for each field.
+/// Message as lists, one for each field.
 Json json_of(const RosContent& content) {
   Json fields = Json::object();
   for (const auto& [name, values] : content.numbers) fields[name] = json_of(values, kExact);
@@ -116,7 +117,7 @@ Json json_of(const RosContent& content) {
   return fields;
 }
 
-/// The runs of a recording, thinned, as the page reads them (web/src/document/runs.ts).
+/// Runs of a recording, thinned, in the form that the page reads (web/src/document/runs.ts).
 class ReportedRuns {
  public:
   explicit ReportedRuns(double rate) : period_{1.0 / rate} {}
@@ -152,6 +153,7 @@ class ReportedRuns {
   }
 
  private:
+  /// Adds a control step; a time that falls begins another run.
   void add_frame(const RosContent& frame) {
     const double time = frame.number("time_s");
     if (!last_ || time < last_->number("time_s")) begin_run();
@@ -182,7 +184,7 @@ class ReportedRuns {
     iterations_ = 0.0;
   }
 
-  /// The control steps of the run that ends: of all of them, not of those that are kept.
+  /// Adds durations and iterations of all control steps, also of those left out, to the run that ends.
   void end_run() {
     if (runs_.empty() || step_times_.empty()) return;
     std::sort(step_times_.begin(), step_times_.end());
@@ -197,14 +199,17 @@ class ReportedRuns {
                              {"mean_iterations", json_of(iterations_ / count, kDrawn)}};
   }
 
-  double period_, next_ = 0.0, iterations_ = 0.0;
-  Json runs_ = Json::array(), run_ = nullptr, centre_ = nullptr, limit_ = nullptr;
-  std::optional<RosContent> last_;
-  std::vector<double> step_times_;
+  double period_;                                            ///< least time between kept steps [s]
+  double next_ = 0.0;                                        ///< time of the next step to keep [s]
+  double iterations_ = 0.0;                                  ///< sum of iterations in this run
+  Json runs_ = Json::array();                                ///< runs so far
+  Json run_ = nullptr, centre_ = nullptr, limit_ = nullptr;  ///< newest description, road and limit
+  std::optional<RosContent> last_;  ///< last control step of this run; none: the next begins one
+  std::vector<double> step_times_;  ///< durations of this run's control steps [µs]
   RosReaders readers_;
 };
 
-/// A recording with its settings.
+/// Recording with name and settings, thinned to `rate` [Hz].
 Result<Json> json_of(const ReportedLog& log, double rate) {
   ReportedRuns runs(rate);
   std::string settings;
@@ -222,7 +227,7 @@ Result<Json> json_of(const ReportedLog& log, double rate) {
   return Json{{"name", log.name}, {"settings", settings}, {"runs", runs.take()}};
 }
 
-/// JSON document of the page; empty if it is too large.
+/// JSON document of the page, thinned to `rate` [Hz]; empty if it is too large.
 Result<std::string> document_of(const ReportOptions& options, double rate) {
   Json logs = Json::array();
   for (const ReportedLog& log : options.logs) {
@@ -242,7 +247,7 @@ Result<std::size_t> write_document(const std::string& file, std::string document
     return fail(ErrorCode::kNotFound,
                 "report: this program has no dashboard: install Node.js and npm, remove the build folder, "
                 "and build again");
-  // The one way out of a script element, or into a comment that hides its end, begins with this character.
+  // Only this character can end a script element, or begin a comment that hides its end.
   for (std::size_t at = 0; (at = document.find('<', at)) != std::string::npos; at += 6)
     document.replace(at, 1, "\\u003c");
   const std::string program = base64(bundle.script), style = base64(bundle.style);

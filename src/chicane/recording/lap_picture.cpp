@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Pictures of a drive: the road, the car and its ghost on a canvas, with a text of speed, times and gaps.
+// Pictures of a drive: reads a recorded run, and draws road, car and ghost with speed, times and gaps as
+// text.
 #include "chicane/recording/lap_picture.hpp"
 
 #include <fmt/format.h>
@@ -17,8 +18,11 @@ namespace chicane::recording {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kMostMoments = 4'000'000;  // limit of control steps read
+// Limit of control steps read; chosen: 44 hours at 25 a second.
+constexpr std::size_t kMostMoments = 4'000'000;
+constexpr double kFarApart = 100.0;  // [m] distance between two steps beyond which a car was placed; chosen
 
+/// Points from two fields of a message.
 std::vector<Vec2> points_of(const RosContent& message, std::string_view x, std::string_view y) {
   const std::vector<double>& xs = message.list(x);
   const std::vector<double>& ys = message.list(y);
@@ -27,6 +31,7 @@ std::vector<Vec2> points_of(const RosContent& message, std::string_view x, std::
   return points;
 }
 
+/// Collects the last run of a recording.
 class RunReader {
  public:
   Result<void> add(const telemetry::McapMessage& message) {
@@ -53,7 +58,7 @@ class RunReader {
   void add_frame(const RosContent& frame) {
     DrivenMoment moment;
     moment.time = frame.number("time_s");
-    // A time that falls begins another run of the same recording: keep only the last one.
+    // A time that falls begins another run of the recording: keep the last run only.
     if (!run_.moments.empty() && moment.time < run_.moments.back().time) {
       run_.moments.clear();
       run_.last_lap = 0;
@@ -128,10 +133,12 @@ Result<DrivenRun> read_run(const std::string& recording) {
 
 namespace {
 
+// Colours, chosen.
 constexpr Colour kGround{17, 24, 32}, kRoad{44, 54, 66}, kEdge{150, 165, 180}, kCar{255, 176, 46},
     kGhost{120, 190, 255, 0.75}, kTrace{255, 176, 46, 0.35}, kWords{236, 240, 245}, kFaint{150, 165, 180},
     kBetter{90, 210, 130}, kWorse{255, 110, 100}, kPanel{17, 24, 32, 0.7};
 
+/// Mixture of two colours; `share` of the second one.
 Colour between(const Colour& a, const Colour& b, double share) {
   const auto mix = [&](std::uint8_t x, std::uint8_t y) {
     return static_cast<std::uint8_t>(std::lround(x + std::clamp(share, 0.0, 1.0) * (y - x)));
@@ -139,13 +146,14 @@ Colour between(const Colour& a, const Colour& b, double share) {
   return {mix(a.red, b.red), mix(a.green, b.green), mix(a.blue, b.blue)};
 }
 
-/// Colour of a speed: red where the plan is slow, green where it is fast.
+/// Colour of a speed, from red for slow to green for fast; `share` of the top speed.
 Colour of_speed(double share) {
   constexpr Colour kSlow{240, 80, 90}, kMiddle{250, 210, 80}, kFast{70, 220, 170};
   return share < 0.5 ? between(kSlow, kMiddle, 2.0 * share) : between(kMiddle, kFast, 2.0 * share - 1.0);
 }
 
-/// Moment between two others, interpolated; a value that is no number in both is taken from the first.
+/// Moment at `time` [s] after the first one, interpolated between two moments. Values that cannot be
+/// interpolated are those of the earlier one.
 DrivenMoment moment_at(const std::vector<DrivenMoment>& moments, double time) {
   const double begin = moments.front().time;
   const auto next = std::upper_bound(moments.begin(), moments.end(), begin + time,
@@ -163,11 +171,12 @@ DrivenMoment moment_at(const std::vector<DrivenMoment>& moments, double time) {
   return moment;
 }
 
-/// First time after the start at which a run was at `s`; none if it never was.
+/// First time after the start [s] at which a run was at `s` [m] in lap number `lap`, from 0; none if it never
+/// was.
 std::optional<double> time_at_place(const std::vector<DrivenMoment>& moments, double s, int lap) {
   for (std::size_t i = 0; i + 1 < moments.size(); ++i) {
     const DrivenMoment &a = moments[i], &b = moments[i + 1];
-    const bool is_here = a.lap - moments.front().lap == lap && a.s <= s && s <= b.s && b.s - a.s < 100.0;
+    const bool is_here = a.lap - moments.front().lap == lap && a.s <= s && s <= b.s && b.s - a.s < kFarApart;
     if (!is_here) continue;
     const double share = b.s > a.s ? (s - a.s) / (b.s - a.s) : 0.0;
     return a.time + share * (b.time - a.time) - moments.front().time;
@@ -175,6 +184,7 @@ std::optional<double> time_at_place(const std::vector<DrivenMoment>& moments, do
   return std::nullopt;
 }
 
+/// Time as minutes and seconds: "1:23.4".
 std::string clock_text(double seconds) {
   return fmt::format("{}:{:04.1f}", static_cast<int>(seconds / 60.0),
                      std::floor(std::fmod(seconds, 60.0) * 10.0) / 10.0);
@@ -205,10 +215,10 @@ std::optional<double> LapPicture::lost_to_ghost(double time) const {
 }
 
 Vec2 LapPicture::Camera::operator()(const Vec2& point) const {
-  return {corner.x() + scale * (point.x() - middle.x()), corner.y() - scale * (point.y() - middle.y())};
+  return {centre.x() + scale * (point.x() - middle.x()), centre.y() - scale * (point.y() - middle.y())};
 }
 
-/// The whole road within a rectangle of the picture.
+// All shares and sizes of the drawing below are chosen by eye.
 LapPicture::Camera LapPicture::whole(double x, double y, double width, double height) const {
   double left = 1e12, right = -1e12, low = 1e12, high = -1e12;
   const auto extend = [&](const Vec2& point) {
@@ -243,8 +253,8 @@ void LapPicture::draw_road(const Camera& camera, double edge) {
 }
 
 void LapPicture::draw_car(const Camera& camera, const DrivenMoment& moment, const Colour& colour) {
-  const double smallest = 9.0;  // least size of a car on a picture of the whole road [px]
-  const double grown = std::max(1.0, smallest / (camera.scale * (run_.front + run_.rear)));
+  constexpr double kSmallest = 9.0;  // [px] least length of a drawn car
+  const double grown = std::max(1.0, kSmallest / (camera.scale * (run_.front + run_.rear)));
   const Vec2 ahead{cos(moment.heading), sin(moment.heading)};
   const Vec2 across{-ahead.y(), ahead.x()};
   const auto place = [&](double along, double side) {
@@ -255,7 +265,7 @@ void LapPicture::draw_car(const Camera& camera, const DrivenMoment& moment, cons
                  place(-run_.rear, 0.8 * half), place(-run_.rear, -0.8 * half),
                  place(-0.9 * run_.rear, -half), place(0.8 * run_.front, -half), place(run_.front, -nose)}},
                colour);
-  if (grown > 1.0) return;
+  if (grown > 1.0) return;  // too small for windscreen and wheels
   canvas_.fill({{place(0.35 * run_.front, 0.7 * half), place(0.1 * run_.front, 0.75 * half),
                  place(0.1 * run_.front, -0.75 * half), place(0.35 * run_.front, -0.7 * half)}},
                kGround);

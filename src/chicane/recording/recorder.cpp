@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Recorder of a run: takes frames from the control thread through a buffer and writes them in a thread of its
-// own.
+// Recorder of a run: takes records from the control thread through a ring, and writes them on another thread.
 #include "chicane/recording/recorder.hpp"
 
 #include <fmt/format.h>
@@ -18,10 +17,11 @@ namespace chicane::recording {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr auto kFlushEvery = std::chrono::milliseconds(50);
-constexpr auto kTryAgainEvery = std::chrono::milliseconds(500);
-constexpr auto kNap = std::chrono::milliseconds(2);
-constexpr auto kWait = std::chrono::microseconds(200);
+// Periods, chosen.
+constexpr auto kFlushEvery = std::chrono::milliseconds(50);      // of writing the chunk to the file
+constexpr auto kTryAgainEvery = std::chrono::milliseconds(500);  // of the same while the disk fails
+constexpr auto kRingPoll = std::chrono::milliseconds(2);         // of looking for records in an empty ring
+constexpr auto kRoomPoll = std::chrono::microseconds(200);       // of looking for room in a full ring
 constexpr const char* kProgram = "chicane " CHICANE_VERSION;
 #ifdef __clang__
 constexpr const char* kCompiler = "clang " __VERSION__;
@@ -46,7 +46,6 @@ Recorder::Recorder(RecorderOptions options, std::unique_ptr<telemetry::McapWrite
 
 Recorder::~Recorder() { static_cast<void>(finish()); }
 
-/// Leaves `reserve` places free.
 template <class Note>
 void Recorder::record(Note&& note, std::uint64_t reserve) noexcept {
   while (!ring_.push(std::forward<Note>(note), reserve)) {
@@ -54,7 +53,7 @@ void Recorder::record(Note&& note, std::uint64_t reserve) noexcept {
       ++left_out_;
       return;
     }
-    std::this_thread::sleep_for(kWait);
+    std::this_thread::sleep_for(kRoomPoll);
   }
 }
 
@@ -81,7 +80,8 @@ Result<RecorderReport> Recorder::finish() {
 void Recorder::work() {
   Clock::time_point flushed = Clock::now();
   while (true) {
-    const bool is_last = wants_end_.load(std::memory_order_acquire);  // asked before the ring is
+    const bool is_last =
+        wants_end_.load(std::memory_order_acquire);  // read before the ring, to lose no record
     Entry* const entry = ring_.front();
     if (entry != nullptr) {
       std::visit([this](auto& note) { write(note); }, *entry);
@@ -93,7 +93,7 @@ void Recorder::work() {
     }
     if (entry != nullptr) continue;
     if (is_last) break;
-    std::this_thread::sleep_for(kNap);
+    std::this_thread::sleep_for(kRingPoll);
   }
   Result<void> done = flush();
   if (done) done = writer_->close();
@@ -104,7 +104,6 @@ void Recorder::work() {
   }
 }
 
-/// Writes all that waits, and the current run's description if it is still missing.
 Result<void> Recorder::flush() {
   Result<void> done = writer_->flush();
   if (!done || !is_undescribed_) return done;
@@ -113,7 +112,6 @@ Result<void> Recorder::flush() {
   return done ? writer_->flush() : done;
 }
 
-/// Reports at once that the disk refuses writes, and when it accepts them again.
 void Recorder::note(const Result<void>& flushed) {
   if (is_failing_ == !flushed) return;
   is_failing_ = !flushed;
@@ -123,8 +121,6 @@ void Recorder::note(const Result<void>& flushed) {
                    : fmt::format("{}: can be written again; {} steps are missing", options_.path, missing_));
 }
 
-/// Begins the file before anything else is done: a run that is killed in its first moments still has its
-/// scenario.
 void Recorder::begin() {
   for (const protocol::RosTopic& topic : protocol::ros_topics()) {
     const std::uint16_t channel = writer_->add_channel(topic.name, topic.type, topic.schema);
@@ -135,7 +131,6 @@ void Recorder::begin() {
   if (state_) state_ = writer_->flush();
 }
 
-/// Writes the description of a run, which stays the same from step to step.
 Result<void> Recorder::describe() {
   const scenario::Scenario& scenario = options_.scenario;
   const InstructionSet set = chosen_instruction_set();
@@ -165,13 +160,11 @@ Result<void> Recorder::describe() {
   return {};
 }
 
-/// Into the chunk; one that is full is handed to the system.
 void Recorder::put(std::uint16_t channel, std::uint64_t log_time, std::uint64_t time,
                    std::string_view bytes) {
   if (const Result<void> done = writer_->write(channel, log_time, time, bytes); !done) note(done);
 }
 
-/// Writes all topics of a cadence; lap topics take the lap in `frame`.
 void Recorder::write(protocol::Cadence cadence, const telemetry::Frame& frame, std::uint64_t time) {
   std::uint16_t channel = 0;
   for (const protocol::RosTopic& topic : protocol::ros_topics()) {
@@ -192,7 +185,7 @@ void Recorder::write(std::unique_ptr<const RecordedRun>& run) {
   run.reset();
   ledger_.begin();
   is_undescribed_ = true;
-  note(flush());  // keeps the order of the file
+  note(flush());  // before the frames of the run
 }
 
 void Recorder::write(const telemetry::Change& change) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Computes recordings again: reads their events in order, drives the control cycle with each measurement, and
-// compares the commands.
+// Recordings: reads their events in order, computes and compares every command, and makes bags and copies.
 #include "chicane/recording/replay.hpp"
 
 #include <fmt/format.h>
@@ -9,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <bit>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -29,7 +27,7 @@
 namespace chicane::recording {
 namespace {
 
-/// Sets the arithmetic of the recording for all later controllers.
+/// Chooses the arithmetic `wanted` of a recording for all later controllers.
 Result<void> choose_arithmetic(const std::string& wanted, const std::string& path) {
   if (wanted.empty() || arithmetic(chosen_instruction_set()) == wanted) return {};
   using enum InstructionSet;
@@ -59,6 +57,7 @@ Result<scenario::Scenario> parse_scenario(std::string_view yaml, const std::stri
   return scenario;
 }
 
+/// Reads the events of a recording.
 class RecordingReader {
  public:
   RecordingReader(const std::string& path, RecordingHead& head,
@@ -120,8 +119,8 @@ class RecordingReader {
   RecordingHead& head_;
   const std::function<Result<void>(const RecordedEvent&)>& visit_;
   Result<void> state_;
-  bool has_scenario_ = false;
-  std::uint64_t damaged_ = 0;
+  bool has_scenario_ = false;  ///< a scenario was read
+  std::uint64_t damaged_ = 0;  ///< messages that could not be decoded
 };
 
 }  // namespace
@@ -147,7 +146,7 @@ Result<scenario::Scenario> recorded_scenario(const std::string& path) {
 
 bool is_foreign_log(const std::string& file) {
   std::error_code trouble;
-  if (std::filesystem::is_directory(file, trouble)) return true;  // a bag, as rosbag2 writes it
+  if (std::filesystem::is_directory(file, trouble)) return true;  // a bag of rosbag2
   if (file.ends_with(".db3") || file.ends_with(".csv")) return true;
   if (!file.ends_with(".mcap")) return false;
   bool is_ours = false, has_odometry = false;
@@ -178,11 +177,7 @@ Result<telemetry::McapReport> check_recording(const std::string& path) {
 
 namespace {
 
-bool is_same_number(double a, double b) {
-  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
-
-/// The control cycles of a run, from the first step on.
+/// Control cycles of a recorded run, computed again.
 class Recomputation {
  public:
   Recomputation(const scenario::Scenario& scenario, std::unique_ptr<controller::Controller> controller,
@@ -193,7 +188,7 @@ class Recomputation {
     cycle_.use_line(std::move(lap));
   }
 
-  /// Applies a change; without effect if it concerns neither controller nor vehicle.
+  /// Applies a change, unless it concerns neither controller nor vehicle.
   void add(const telemetry::Change& change) {
     const Result<run::Setting> setting = run::read_setting(change);
     if (!setting) return;
@@ -223,6 +218,7 @@ class Recomputation {
   }
 
  private:
+  /// Computes a step; true if it equals the recorded one.
   bool is_reproduced(const protocol::Step& step) {
     frame_.measurement = step.measurement;
     frame_.has_measurement = step.has_measurement;
@@ -255,7 +251,7 @@ Result<ReplayReport> verify_recording(const std::string& path, const run::Factor
       if (!controller) return fail(controller.error());
       std::optional<road::Track> track;
       if (scenario->guard.road == safety::GuardRoad::kTrack) {
-        auto found = make.track(*scenario);  // guard and racing controller knew it
+        auto found = make.track(*scenario);
         if (!found) return fail(found.error());
         track = std::move(*found);
       }
@@ -291,13 +287,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Facts of a recording's messages for metadata.yaml.
+/// Content of a recording for metadata.yaml.
 struct Contents {
-  std::map<std::string, std::pair<std::string, std::uint64_t>>
-      topics{};  ///< type and number of messages by name
-  std::uint64_t messages = 0;
-  std::uint64_t first = std::numeric_limits<std::uint64_t>::max();  ///< [ns]
-  std::uint64_t last = 0;                                           ///< [ns]
+  /// Type and number of messages by topic.
+  std::map<std::string, std::pair<std::string, std::uint64_t>> topics{};
+  std::uint64_t messages = 0;                                       ///< messages of all topics
+  std::uint64_t first = std::numeric_limits<std::uint64_t>::max();  ///< log time of the first message [ns]
+  std::uint64_t last = 0;                                           ///< log time of the last message [ns]
 };
 
 Result<Contents> contents_of(const std::string& recording) {
@@ -398,7 +394,7 @@ TemporaryFile::TemporaryFile(std::string_view extension) {
   std::filesystem::path folder = std::filesystem::temp_directory_path(error);
   if (error) folder = ".";
   path_ = (folder / fmt::format("chicane-{}-{}{}", ::getpid(), number++, extension)).string();
-  std::filesystem::remove(path_, error);  // left by a killed process with the same number
+  std::filesystem::remove(path_, error);  // a file of a killed process with the same id
 }
 
 TemporaryFile::~TemporaryFile() {

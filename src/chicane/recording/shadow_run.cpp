@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-// A shadow run repeats a recorded or live run up to a moment; from there two futures are driven, one with
-// other settings, and compared.
+// Shadow runs, and branches: a recorded or live run is repeated up to a moment; from there two futures are
+// driven, one of them with other settings, and summarised.
 #include "chicane/recording/shadow_run.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <variant>
@@ -20,17 +19,14 @@
 namespace chicane::recording {
 namespace {
 
-bool is_same(double a, double b) noexcept {
-  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
-
+/// Whether measurement and command of a frame have the bits of a recorded step.
 bool is_same(const telemetry::Frame& frame, const protocol::Step& step) noexcept {
   const model::Measurement &now = frame.measurement, &then = step.measurement;
   const model::Command &sent = frame.result.command, &sent_then = step.command;
-  return is_same(now.x, then.x) && is_same(now.y, then.y) && is_same(now.psi, then.psi) &&
-         is_same(now.speed, then.speed) && is_same(now.steer, then.steer) &&
-         is_same(now.throttle, then.throttle) && is_same(sent.steer, sent_then.steer) &&
-         is_same(sent.throttle, sent_then.throttle);
+  return is_same_number(now.x, then.x) && is_same_number(now.y, then.y) &&
+         is_same_number(now.psi, then.psi) && is_same_number(now.speed, then.speed) &&
+         is_same_number(now.steer, then.steer) && is_same_number(now.throttle, then.throttle) &&
+         is_same_number(sent.steer, sent_then.steer) && is_same_number(sent.throttle, sent_then.throttle);
 }
 
 }  // namespace
@@ -90,7 +86,7 @@ void ShadowRun::apply(const run::Setting& setting) {
   if (const auto* fault = std::get_if<run::FaultSwitch>(&setting.action)) {
     const auto bit = static_cast<unsigned>(fault->event.fault);
     const bool is_on = (loop_->frame().active_faults >> bit & 1U) != 0U;
-    const bool is_of_the_past = setting.change.time <= loop_->frame().time;
+    const bool is_of_the_past = setting.change.time <= loop_->frame().time;  // this run has driven beyond it
     if (is_of_the_past && is_on == (fault->to != run::FaultSwitch::To::kOff)) return;
   }
   finish_cycle();
@@ -106,11 +102,11 @@ namespace {
 /// Summary of a future, collected from its frames.
 class FutureMeter {
  public:
-  /// Distance from the start line of the lap in which the first frame is [m].
+  /// Adds a frame; returns its distance from the start line of the first frame's lap [m].
   double add(const telemetry::Frame& frame, const road::Track& track) {
     const bool is_first = count_ == 0;
     if (is_first) start_ = frame.time, lap_ = frame.lap, events_ = frame.off_track_events;
-    // The car's true motion, not the measured one: sensors may fail.
+    // Prefer the true motion to the measured one, because sensors may fail.
     const double speed = frame.has_truth ? hypot(frame.truth.vx, frame.truth.vy) : frame.measurement.speed;
     future_.max_lateral_error = std::max(future_.max_lateral_error, std::fabs(frame.lateral_error));
     future_.min_edge_distance =
@@ -136,7 +132,7 @@ class FutureMeter {
   }
 
  private:
-  /// Adds the way since the last frame, and the passage of a third of the lap on it, interpolated in time.
+  /// Adds the distance since the last frame, and the passage of a third of a lap, interpolated in time.
   void go_to(const telemetry::Frame& frame, const road::Track& track) {
     constexpr int kSectors = sim::WorldState::kSectors;
     const double length = track.lap_length(), third = length / kSectors;
@@ -162,10 +158,12 @@ class FutureMeter {
   }
 
   Future future_{.min_edge_distance = std::numeric_limits<double>::quiet_NaN()};
-  std::uint64_t count_ = 0;
-  double start_ = 0.0, distance_ = 0.0, s_ = 0.0, speed_sum_ = 0.0;
-  int lap_ = 0, events_ = 0;  ///< lap and off-track events of the first frame
-  int passed_ = 0;            ///< thirds of laps, from the start line on
+  std::uint64_t count_ = 0;          ///< frames
+  double start_ = 0.0;               ///< time of the first frame [s]
+  double distance_ = 0.0, s_ = 0.0;  ///< distance, and Frame::s, of the last frame [m]
+  double speed_sum_ = 0.0;           ///< sum of speeds [m/s]
+  int lap_ = 0, events_ = 0;         ///< lap and off-track events of the first frame
+  int passed_ = 0;                   ///< thirds of laps passed since the start line
 };
 
 /// Reads a setting or a fault that may change during a run.
@@ -184,17 +182,18 @@ Result<run::Setting> read_live(const telemetry::Change& change) {
 }
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr double kSameTime = 1e-9;  // [s] rounding of times
 
-/// The recorded run computed again up to the branch, and two futures from there on: the run itself, as
-/// recorded until the recording ends, and a copy with the settings.
+/// Computation of a branch: the recorded run is computed again up to the branch. From there the first future
+/// is the run itself, as recorded until the recording ends; the second one is a copy with other settings.
 class Branching {
  public:
   Branching(const BranchOptions& options, const BranchHooks& hooks)
-      : options_{options}, hooks_{hooks}, was_{*this, false}, is_{*this, true} {}
+      : options_{options}, hooks_{hooks}, first_{*this, false}, second_{*this, true} {}
 
   Result<BranchReport> drive(const RunEvents& events) {
-    if (options_.from && !was_.car.begin(*options_.from)) return cannot_copy();
-    last_log_time_ = was_.car.time();
+    if (options_.from && !first_.car.begin(*options_.from)) return cannot_copy();
+    last_log_time_ = first_.car.time();
     const Result<void> read = events([this](const RecordedEvent& event) {
       return std::visit([&](const auto& one) { return take(one, event); }, event);
     });
@@ -208,18 +207,18 @@ class Branching {
                               options_.at, last_log_time_));
     }
     report_.known_until = last_log_time_;
-    was_.car.finish_cycle();  // a recording ends at a control step, a run may have continued to a line
-    if (options_.drives_both && !is_over_) drive_on(was_);
-    drive_on(is_);
+    first_.car.finish_cycle();  // a recording ends at a control step
+    if (options_.drives_both && !is_over_) drive_on(first_);
+    drive_on(second_);
     if (has_given_up_) return fail(ErrorCode::kInvalidArgument, "given up");
-    report_.first_difference = was_.car.first_difference();
-    report_.recorded = was_.meter.future();
-    report_.branched = is_.meter.future();
+    report_.first_difference = first_.car.first_difference();
+    report_.recorded = first_.meter.future();
+    report_.branched = second_.meter.future();
     return report_;
   }
 
  private:
-  /// One of the futures.
+  /// One of the two futures.
   struct Side {
     Side(Branching& of, bool is_second)
         : is_branch{is_second},
@@ -241,58 +240,60 @@ class Branching {
 
   Result<void> take(const scenario::Scenario& /*scenario*/, const RecordedEvent& event) {
     if (is_left_behind(has_branched_)) return {};
-    Result<void> begun = was_.car.follow(event);
-    return begun && !has_branched_ && hooks_.on_begin ? hooks_.on_begin(was_.car.loop()) : begun;
+    Result<void> begun = first_.car.follow(event);
+    return begun && !has_branched_ && hooks_.on_begin ? hooks_.on_begin(first_.car.loop()) : begun;
   }
 
   Result<void> take(const telemetry::Change& change, const RecordedEvent& event) {
     if (is_left_behind(false)) return {};
     if (!has_branched_) tell(change);
-    return was_.car.follow(event);
+    return first_.car.follow(event);
   }
 
   Result<void> take(const RecordedStep& recorded, const RecordedEvent& event) {
     last_log_time_ = recorded.log_time;
     if (!may_go_on(recorded.log_time)) return fail(ErrorCode::kInvalidArgument, "given up");
-    const bool is_start = !has_branched_ && recorded.log_time >= options_.at - 1e-9;
+    const bool is_start = !has_branched_ && recorded.log_time >= options_.at - kSameTime;
     if (is_start) {
       if (Result<void> branched = branch(recorded); !branched) return branched;
     }
     const bool is_seen = has_branched_ && is_within(recorded.log_time);
     // A comparison needs nothing after the first future's end, and no other run.
     if (is_left_behind(has_branched_ && !is_start && (!is_seen || recorded.step.begins))) return {};
-    if (Result<void> followed = was_.car.follow(event); !followed) return followed;
-    if (is_seen) add(was_);
+    if (Result<void> followed = first_.car.follow(event); !followed) return followed;
+    if (is_seen) add(first_);
     if (has_branched_) return {};
     ++report_.steps_before;
-    if (hooks_.on_frame) hooks_.on_frame(was_.car.loop().frame());
+    if (hooks_.on_frame) hooks_.on_frame(first_.car.loop().frame());
     return {};
   }
 
-  /// Branches at the end: the next events are not known yet.
+  /// Branches after the last known event.
   Result<void> branch_at_end() {
-    if (!was_.car.has_begun() || was_.car.next_cycle() == 0)
+    if (!first_.car.has_begun() || first_.car.next_cycle() == 0)
       return fail(ErrorCode::kInvalidArgument, "the run has not begun: there is nothing to go on from");
     RecordedStep next;
-    next.step.cycle = was_.car.next_cycle();
-    was_.car.finish_cycle();
-    next.log_time = last_log_time_ + (was_.car.loop().time() - was_.car.loop().frame().time);
+    next.step.cycle = first_.car.next_cycle();
+    first_.car.finish_cycle();
+    next.log_time = last_log_time_ + (first_.car.loop().time() - first_.car.loop().frame().time);
     return branch(next);
   }
 
+  /// Branches at the control step `recorded`, which is not computed yet.
   Result<void> branch(const RecordedStep& recorded) {
-    was_.car.finish_cycle();
+    first_.car.finish_cycle();
     has_branched_ = true;
     report_.at = recorded.log_time;
     report_.cycle = recorded.step.cycle;
-    run::ClosedLoop& loop = was_.car.loop();
+    run::ClosedLoop& loop = first_.car.loop();
     if (recorded.step.begins && loop.cycle() > 0) loop.restart();
     start_ = loop.time();
-    return is_.car.begin(was_.car) ? change() : cannot_copy();
+    return second_.car.begin(first_.car) ? change() : cannot_copy();
   }
 
+  /// Applies the settings of the options to the second future.
   Result<void> change() {
-    const run::ClosedLoop& loop = is_.car.loop();
+    const run::ClosedLoop& loop = second_.car.loop();
     scenario::Scenario changed = loop.scenario();
     for (const auto& [key, text] : options_.settings) {
       if (!decltype(telemetry::Change::value)::fits(text))
@@ -304,7 +305,7 @@ class Branching {
       const Result<run::Setting> setting = read_live(change);
       if (!setting) return fail(setting.error());
       if (const auto* field = std::get_if<run::FieldValue>(&setting->action)) run::write(changed, *field);
-      is_.car.apply(*setting);
+      second_.car.apply(*setting);
       tell(change);
     }
     for (const protocol::Contradiction& found : protocol::contradictions(changed))
@@ -312,7 +313,7 @@ class Branching {
     return {};
   }
 
-  /// Drives a side on by itself, from its current state.
+  /// Drives a future on, from its current state to the end of the branch.
   void drive_on(Side& side) {
     const run::ClosedLoop& loop = side.car.loop();
     const double rest = last_log_time_ - report_.at;
@@ -329,6 +330,7 @@ class Branching {
     if (driven() > kLongest) report_.end_reason = "the laps were not driven within an hour";
   }
 
+  /// Takes a driven control step of a future.
   void step(Side& side) {
     add(side);
     const run::ClosedLoop& loop = side.car.loop();
@@ -336,7 +338,7 @@ class Branching {
     if (side.is_branch && hooks_.on_frame) hooks_.on_frame(loop.frame());
   }
 
-  /// A control step behind the branch.
+  /// Adds a control step after the branch to the summary of a future.
   void add(Side& side) {
     const run::ClosedLoop& loop = side.car.loop();
     const double distance = side.meter.add(loop.frame(), loop.track());
@@ -352,7 +354,7 @@ class Branching {
     if (hooks_.on_change) hooks_.on_change(change);
   }
 
-  /// Stops computing the record: the first of two driven futures `ends`.
+  /// Whether the record is not needed any more: two futures are driven, and the first one `ends`.
   bool is_left_behind(bool ends) { return is_over_ = is_over_ || (ends && options_.drives_both); }
   [[nodiscard]] bool may_go_on(double time) const { return !hooks_.go_on || hooks_.go_on(time); }
   [[nodiscard]] bool has_all_laps(const Side& side) const {
@@ -360,21 +362,21 @@ class Branching {
   }
   /// Whether a recorded time is within the duration asked for the second future.
   [[nodiscard]] bool is_within(double log_time) const {
-    if (has_all_laps(was_)) return false;
-    return log_time - report_.at <= (options_.duration > 0.0 ? options_.duration : kForever) + 1e-9;
+    if (has_all_laps(first_)) return false;
+    return log_time - report_.at <= (options_.duration > 0.0 ? options_.duration : kForever) + kSameTime;
   }
 
-  static constexpr double kLongest = 3600.0;  // [s] without a given duration
+  static constexpr double kLongest = 3600.0;  ///< longest future of laps without a duration [s]; chosen
 
   const BranchOptions& options_;
   const BranchHooks& hooks_;
   BranchReport report_;
-  Side was_, is_;
-  bool has_branched_ = false;
-  bool is_over_ = false;  ///< the first future ended with the record
-  bool has_given_up_ = false;
-  double start_ = 0.0;          ///< start of the run at the branch [s]
-  double last_log_time_ = 0.0;  ///< [s]
+  Side first_, second_;
+  bool has_branched_ = false;   ///< the branch is reached
+  bool is_over_ = false;        ///< the first future has ended within the record
+  bool has_given_up_ = false;   ///< BranchHooks::go_on has returned false
+  double start_ = 0.0;          ///< run time at the branch [s]
+  double last_log_time_ = 0.0;  ///< log time of the last visited control step [s]
 };
 
 }  // namespace

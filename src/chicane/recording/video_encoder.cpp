@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Films by an external encoder, which gets the pictures over a socket.
+// Films by the program ffmpeg: its command line, its process, and the pictures that it gets through a socket.
 #include "chicane/recording/video_encoder.hpp"
 
 #include <fcntl.h>
@@ -49,7 +49,9 @@ std::vector<std::string> encoder_command(const VideoFormat& format) {
                                  "-s",       fmt::format("{}x{}", format.width, format.height),
                                  "-r",       fmt::format("{:g}", format.rate),
                                  "-i",       "pipe:0"};
+  // Codecs and qualities by format; chosen by eye and size of the file.
   const std::string ending = ending_of(format.output);
+  const std::string quality = std::to_string(format.quality > 0 ? format.quality : 60);
   std::vector<std::string> coding;
   if (ending == ".mp4")
     coding = {"-c:v", "libx264", "-pix_fmt", "yuv420p",   "-crf",
@@ -58,16 +60,8 @@ std::vector<std::string> encoder_command(const VideoFormat& format) {
     coding = {"-c:v", "libvpx-vp9", "-pix_fmt",  "yuv420p", "-crf",      "33",
               "-b:v", "0",          "-deadline", "good",    "-cpu-used", "4"};
   if (ending == ".webp")
-    coding = {"-c:v",
-              "libwebp_anim",
-              "-pix_fmt",
-              "yuv420p",
-              "-quality",
-              fmt::format("{}", format.quality > 0 ? format.quality : 60),
-              "-compression_level",
-              "4",
-              "-loop",
-              "0"};
+    coding = {"-c:v",  "libwebp_anim",       "-pix_fmt", "yuv420p", "-quality",
+              quality, "-compression_level", "4",        "-loop",   "0"};
   if (ending == ".gif")
     coding = {"-filter_complex", "split[a][b];[a]palettegen=max_colors=64[p];[b][p]paletteuse=dither=none",
               "-loop", "0"};

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Encoder of films: pictures through the program ffmpeg into .mp4, .webm, .webp or .gif.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +11,12 @@
 
 namespace chicane::recording {
 
+/// Format of a film.
 struct VideoFormat {
-  std::string output{};  ///< file; its ending gives the format: .mp4, .webm, .webp or .gif
-  int width = 1280, height = 720;
-  double rate = 30.0;  ///< pictures a second
-  int quality = 0;     ///< quality of .webp, 1 to 100; 0: 60
+  std::string output{};            ///< file; its ending gives the format: .mp4, .webm, .webp or .gif
+  int width = 1280, height = 720;  ///< size [px]
+  double rate = 30.0;              ///< pictures per second
+  int quality = 0;                 ///< quality of .webp, 1 to 100; 0: 60
 };
 
 /// Checks the ending of a name. kInvalidArgument lists the known endings.
@@ -22,8 +24,8 @@ struct VideoFormat {
 /// Command line of the encoder as words; the last one is the output.
 [[nodiscard]] std::vector<std::string> encoder_command(const VideoFormat& format);
 
-/// Encodes a film by the program `ffmpeg` of the system, which gets the pictures through a pipe. finish()
-/// gives the file its name; without it the file is deleted.
+/// Encodes a film by the program `ffmpeg` of the system, which gets the pictures through a socket. The film
+/// is written under another name; finish() gives it its own, and without finish() it is deleted.
 class VideoEncoder {
  public:
   /// Starts the encoder. kNotFound, with the package's name, without ffmpeg; kInvalidArgument for an unknown
@@ -42,9 +44,9 @@ class VideoEncoder {
   VideoEncoder(std::string output, std::string unfinished, int process, int pipe)
       : output_{std::move(output)}, unfinished_{std::move(unfinished)}, process_{process}, pipe_{pipe} {}
 
-  std::string output_, unfinished_;
-  int process_;  ///< process of ffmpeg; -1: it has ended
-  int pipe_;
+  std::string output_, unfinished_;  ///< path of the film, and of the unfinished one
+  int process_;                      ///< process of ffmpeg; -1: it has ended
+  int pipe_;                         ///< socket to ffmpeg; -1: closed
 };
 
 }  // namespace chicane::recording

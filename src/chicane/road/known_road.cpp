@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The guard's road: line and edges, from a track or from the waypoints seen so far.
+// The guard's road: line and edges of a track, of waypoints, or of a planned lap.
 #include "chicane/road/known_road.hpp"
 
 #include <cmath>
@@ -11,24 +11,55 @@
 namespace chicane::road {
 namespace {
 
-/// The speed plan of a supervisor's line is not used.
-constexpr double kWaypointSpacing = 10.0;  // [m]
-constexpr double kMostToNext = 25.0;       // [m] from the last waypoint to the next
+// Chosen: those of public simulators are 5 to 25 m apart.
+constexpr double kWaypointSpacing = 10.0;  // [m] between the waypoints taken from a track's line
+constexpr double kMostToNext = 25.0;       // [m] limit of the assumed distance to the next waypoint
+constexpr std::size_t kVisible = 6;        // waypoints of a measurement, as in Udacity's telemetry
+constexpr std::size_t kFewest = 8;         // waypoints of the shortest loop that WaypointMap closes
+constexpr double kPeriod = 0.32;      // [s] of a measurement: the most planning that Road::add() does at once
+constexpr int kEdgeSteps = 5;         // iterations that find an edge across another line
+constexpr double kFootToFoot = 12.0;  // [m] limit of the way along the centre between two iterations
+constexpr double kEdgeFound = 0.01;   // [m] limit of the last iteration's step; else the first step counts
+
+/// Options of the road learned from waypoints; the guard uses its line alone, not its speeds.
 constexpr RoadOptions kSeen{
     .half_width = 0.0, .smoothing_width = 1.0, .remember_waypoints = true, .speed = {}};
-constexpr int kEdgeSteps = 5;         // iterations that find an edge across another line
-constexpr double kFootToFoot = 12.0;  // [m] along the centre from one of their feet to the next
-constexpr double kEdgeFound = 0.01;   // [m] their last step; where it is larger the first one counts
+
+/// Points of a closed track's line as waypoints of telemetry, evenly spaced.
+std::vector<Vec2> waypoints_of(const RoadData& data) {
+  std::vector<Vec2> waypoints;
+  double next = 0.0;
+  for (std::size_t i = 0; i + 1 < data.points.size(); ++i) {
+    if (data.points[i].s < next || data.length - data.points[i].s < 0.5 * kWaypointSpacing) continue;
+    waypoints.push_back(data.points[i].position);
+    next = data.points[i].s + kWaypointSpacing;
+  }
+  return waypoints;
+}
+
+/// Road learned by driving past `waypoints` until its lap is planned, or for four laps and 2000 measurements.
+std::unique_ptr<Road> learned_road(const std::vector<Vec2>& waypoints, const model::VehicleParams& vehicle) {
+  auto road = std::make_unique<Road>(kSeen, vehicle);
+  model::Measurement shown;
+  shown.waypoint_count = kVisible;
+  const std::size_t most = 4 * waypoints.size() + 2000;
+  for (std::size_t i = 0; i < most && !road->line().is_closed(); ++i) {
+    for (std::size_t k = 0; k < kVisible; ++k) shown.waypoints[k] = waypoints[(i + k) % waypoints.size()];
+    road->add(shown);
+    shown.time += kPeriod;
+  }
+  return road;
+}
 
 }  // namespace
 
-KnownRoad::KnownRoad(const road::RoadData& data, const model::VehicleParams& vehicle)
+KnownRoad::KnownRoad(const RoadData& data, const model::VehicleParams& vehicle)
     : line_{static_cast<int>(data.points.size())} {
   const int intervals = static_cast<int>(data.points.size()) - 1;
   if (intervals < 1 || !line_.shape(data.length, intervals, data.is_closed)) return;
   edges_.reserve(data.points.size());
   for (std::size_t i = 0; i < data.points.size(); ++i) {
-    const road::RoadPoint& point = data.points[i];
+    const RoadPoint& point = data.points[i];
     line_.samples()[i].curve = {.position = point.position,
                                 .tangent = Vec2{cos(point.heading), sin(point.heading)},
                                 .heading = point.heading,
@@ -38,38 +69,25 @@ KnownRoad::KnownRoad(const road::RoadData& data, const model::VehicleParams& veh
   if (data.is_closed) smooth(data, vehicle);
 }
 
-/// Replaces the track's own line by the smooth one that a controller plans from its waypoints: as wide in the
-/// bends.
-void KnownRoad::smooth(const road::RoadData& data, const model::VehicleParams& vehicle) {
-  std::vector<Vec2> waypoints;
-  double next = 0.0;
-  for (std::size_t i = 0; i + 1 < data.points.size(); ++i) {
-    if (data.points[i].s < next || data.length - data.points[i].s < 0.5 * kWaypointSpacing) continue;
-    waypoints.push_back(data.points[i].position);
-    next = data.points[i].s + kWaypointSpacing;
-  }
-  if (waypoints.size() < 8) return;
-  const auto planned = std::make_unique<Road>(kSeen, vehicle);
-  model::Measurement shown;
-  shown.waypoint_count = 6;
-  const std::size_t most = 4 * waypoints.size() + 2000;
-  for (std::size_t i = 0; i < most && !planned->line().is_closed(); ++i) {
-    for (std::size_t k = 0; k < 6; ++k) shown.waypoints[k] = waypoints[(i + k) % waypoints.size()];
-    planned->add(shown);
-    shown.time += 0.32;
-  }
+void KnownRoad::smooth(const RoadData& data, const model::VehicleParams& vehicle) {
+  const std::vector<Vec2> waypoints = waypoints_of(data);
+  if (waypoints.size() < kFewest) return;
+  const std::unique_ptr<Road> planned = learned_road(waypoints, vehicle);
   if (!planned->line().is_closed()) return;
   const ReferenceLine centre = line_;
-  const auto beside = [&](const CurvePoint& here, const ReferenceLine::Projection& foot, double side) {
+  // Distance from the point `here`, whose foot on the centre is `foot`, to the edge on a side (1: left, −1:
+  // right), across the new line: steps by the gap to the edge as measured across the centre.
+  const auto distance_to_edge = [&](const CurvePoint& here, const ReferenceLine::Projection& foot,
+                                    double side) {
     const Vec2 across = side * Vec2{-here.tangent.y(), here.tangent.x()};
-    const auto left_over = [&](const ReferenceLine::Projection& at) {
+    const auto gap = [&](const ReferenceLine::Projection& at) {
       const Edges widths = this->edges(at.s);
       return (side > 0.0 ? widths.left : widths.right) - side * at.d;
     };
-    const double first = left_over(foot);
+    const double first = gap(foot);
     double room = first, step = first;
     for (int i = 0; i < kEdgeSteps; ++i) {
-      step = left_over(centre.project(here.position + room * across, foot.s, kFootToFoot));
+      step = gap(centre.project(here.position + room * across, foot.s, kFootToFoot));
       room += step;
     }
     return std::fabs(step) < kEdgeFound ? room : first;
@@ -77,9 +95,9 @@ void KnownRoad::smooth(const road::RoadData& data, const model::VehicleParams& v
   std::vector<Edges> edges;
   edges.reserve(planned->line().samples().size());
   for (const ReferenceLine::Sample& sample : planned->line().samples()) {
-    const ReferenceLine::Projection place =
+    const ReferenceLine::Projection foot =
         centre.project_along(sample.curve.position, sample.curve.heading, 2.0 * vehicle.width);
-    edges.push_back({beside(sample.curve, place, 1.0), beside(sample.curve, place, -1.0)});
+    edges.push_back({distance_to_edge(sample.curve, foot, 1.0), distance_to_edge(sample.curve, foot, -1.0)});
   }
   line_ = planned->line();
   edges_ = std::move(edges);
@@ -96,8 +114,7 @@ void KnownRoad::use_line(const RacingRoad* lap) {
   edges_.clear();
   for (std::size_t i = 0; i < line_.samples().size(); ++i) {
     const double s = static_cast<double>(i) * line_.spacing();
-    const Road::Room room = lap->room(s);
-    edges_.push_back(seen_ ? assumed_edges(line_.demand(s).offset) : Edges{room.left, room.right});
+    edges_.push_back(seen_ ? assumed_edges(line_.demand(s).offset) : lap->room(s));
   }
   is_raced_ = true;
   slides_ = lap->terms().slides;

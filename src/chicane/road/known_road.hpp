@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// KnownRoad: the line and the edges by which the guard plans stops.
 #pragma once
 
 #include <algorithm>
@@ -14,48 +15,48 @@
 
 namespace chicane::road {
 
-/// The road that a supervisor knows: its line and its edges. Either a track's, complete from the beginning,
-/// or learned from the waypoints of measurements, with an assumed width. All memory is reserved at
-/// construction; one thread.
+/// Road as the guard knows it: a line with the distances to both edges. It is a track's, complete from the
+/// beginning, or learned from the waypoints of measurements, with an assumed width. A planned racing line can
+/// take the place of the middle of either. All memory is reserved at construction; one thread.
 class KnownRoad {
  public:
-  /// No road, and none is learned: for a guard that is off.
+  /// Empty road that learns nothing: for a guard that is off.
   KnownRoad() : line_{2} {}
-  /// A track's road. Pre: `data` has at least two points.
-  KnownRoad(const road::RoadData& data, const model::VehicleParams& vehicle);
-  /// A road learned from waypoints; `half_width`: assumed from their line to each edge [m].
+  /// Road of a track. A closed one has the line that a controller would plan from the track's waypoints, so
+  /// that its bends are as wide as driven ones. Pre: `data` has at least two points.
+  KnownRoad(const RoadData& data, const model::VehicleParams& vehicle);
+  /// Road learned from waypoints; `half_width`: assumed distance from their line to each edge [m].
   KnownRoad(double half_width, const model::VehicleParams& vehicle);
 
-  /// Replaces the middle of the road by a planned racing line: line(), edges() and target() are the plan's.
-  /// On a road from waypoints until reset(), with edges `half_width` from the waypoints' line. Allocates;
-  /// null changes nothing.
+  /// Replaces the line by that of a planned lap; edges() and target() are relative to it from then on. On a
+  /// road from waypoints the edges stay `half_width` from the waypoints' line, and reset() restores that
+  /// line. Allocates; null changes nothing.
   void use_line(const RacingRoad* lap);
 
+  /// Forgets the waypoints, and a racing line planned from them; does nothing on a track.
   void reset() noexcept;
   /// Learns the waypoints of a measurement; does nothing on a track.
   void add(const model::Measurement& now) noexcept;
 
   /// Line in W; empty while no road is known.
   [[nodiscard]] const ReferenceLine& line() const noexcept { return is_learning() ? seen_->line() : line_; }
-  /// Distances from the line to the edges at s, both positive on the road [m]. Pre: the line is not empty.
-  struct Edges {
-    double left = 0.0;
-    double right = 0.0;
-  };
+  /// Distances from the line to the edges, both positive on the road [m].
+  using Edges = Road::Room;
+  /// Edges at arc length s [m] of the line. Pre: the line is not empty.
   [[nodiscard]] Edges edges(double s) const noexcept;
   /// End of an open road [m]. A road from waypoints is assumed to continue straight to the next waypoint (as
   /// far as the last two are apart, at most 25 m), and beyond it by half its width.
   [[nodiscard]] double end() const noexcept {
     return line().length() + (is_learning() ? next_waypoint_ + half_width_ : 0.0);
   }
-  /// Lateral place for a car that stops, left of the line positive, between `edges` [m]: the middle of the
-  /// road, or the racing line, at least `room` from the edges.
+  /// Lateral position for a stopping car, left of the line positive [m]: the middle between `edges`; on a
+  /// racing line that line, or the position at `room` from an edge that is nearer.
   [[nodiscard]] double target(const Edges& edges, double room) const noexcept {
     const double middle = 0.5 * (edges.left - edges.right);
     if (!is_raced_ || edges.left + edges.right < 2.0 * room) return middle;
     return std::clamp(0.0, room - edges.right, edges.left - room);
   }
-  /// Whether use_line() has set a racing line; demand().speed is the planned lap's then.
+  /// Whether use_line() has set a racing line. line().demand().speed is the planned lap's then.
   [[nodiscard]] bool is_raced() const noexcept { return is_raced_; }
   /// Whether the planned lap slides beyond the peak of the tyres.
   [[nodiscard]] bool slides() const noexcept { return is_raced_ && slides_; }
@@ -63,21 +64,23 @@ class KnownRoad {
   [[nodiscard]] unsigned revision() const noexcept { return lines_ + (seen_ ? seen_->revision() : 0U); }
 
  private:
+  /// Whether the line is that of the waypoints.
   [[nodiscard]] bool is_learning() const noexcept { return seen_ && !is_raced_; }
-  /// Edges of a road from waypoints, seen from a line `offset` [m] left of theirs.
+  /// Edges of a road from waypoints, relative to a line `offset` [m] left of the waypoints' line.
   [[nodiscard]] Edges assumed_edges(double offset) const noexcept {
     return {half_width_ - offset, half_width_ + offset};
   }
-  void smooth(const road::RoadData& data, const model::VehicleParams& vehicle);
+  /// Replaces the line of a closed track by the smooth one that a controller plans from its waypoints.
+  void smooth(const RoadData& data, const model::VehicleParams& vehicle);
 
-  ReferenceLine line_;
-  std::vector<Edges> edges_;  ///< edges at the samples of line_
-  std::optional<Road> seen_;
-  double half_width_ = 0.0;
+  ReferenceLine line_;          ///< line of a track, or racing line
+  std::vector<Edges> edges_;    ///< edges at the samples of line_
+  std::optional<Road> seen_;    ///< road learned from waypoints; none on a track
+  double half_width_ = 0.0;     ///< from the waypoints' line to each edge [m]
   double next_waypoint_ = 0.0;  ///< assumed distance from the last waypoint to the next [m]
-  unsigned lines_ = 0;          ///< number of lines so far
-  bool is_raced_ = false;
-  bool slides_ = false;  ///< whether the last racing line slides
+  unsigned lines_ = 0;          ///< number of changes of line_
+  bool is_raced_ = false;       ///< line_ is a racing line
+  bool slides_ = false;         ///< the last racing line slides
 };
 
 }  // namespace chicane::road

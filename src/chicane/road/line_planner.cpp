@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Plan of a line in instalments: smoothing within the road's width, samples, and speeds by the tyres' limits.
+// Planning of a line in instalments: smoothing within a strip (LineSmoother), speeds by the limits of tyres,
+// drive and brakes (SpeedPlan), and the steps from waypoint line to planned line (LinePlanner).
 #include "chicane/road/line_planner.hpp"
 
 #include <algorithm>
@@ -11,10 +12,12 @@
 namespace chicane::road {
 namespace {
 
-constexpr int kPasses = 10;            // passes over the weights
+constexpr int kPasses = 10;            // passes over the weights; chosen: bounds the work
 constexpr double kLeastWeight = 1e-3;  // √w where there is room [1/m²]
-constexpr double kFirstWeight = 2e-3;  // √w of the first pass
-constexpr double kEndWeight = 5e-2;    // √w added at the ends of the line
+constexpr double kFirstWeight = 2e-3;  // √w of the first pass [1/m²]
+constexpr double kEndWeight = 5e-2;    // √w added at the ends of the line [1/m²]
+constexpr double kLeastChange = 0.4;   // bounds of the factor of √w in one pass; chosen: converges without
+constexpr double kMostChange = 2.5;    // oscillation
 
 }  // namespace
 
@@ -66,12 +69,12 @@ bool LineSmoother::advance(int& work) noexcept {
   return instalments_.phase() == kLastPhase;
 }
 
-/// Bending at inner knot k, and its change to the next one.
 void LineSmoother::assemble(int k) noexcept {
   add_bending(k);
   if (k + 2 < knots_) add_slope(k);
   if (k > 1 && k + 2 < knots_) return;
-  // The ends of the line are held a little, and come in along it.
+  // Weights of the ends of the line: on their offsets, and on the difference to their neighbours' offsets, so
+  // that the new line begins and ends near the given one and almost parallel to it.
   const int end = k == 1 ? 0 : knots_ - 1;
   const double lean = 0.1 / spacing_;
   row(end).band[0] += kEndWeight * kEndWeight + lean * lean;
@@ -108,7 +111,6 @@ void LineSmoother::add_slope(int k) noexcept {
   }
 }
 
-/// One row of A + w = L D Lᵀ, and of L y = right.
 void LineSmoother::eliminate(int k) noexcept {
   Row& now = row(k);
   const Row& one = row(k - 1);
@@ -133,23 +135,25 @@ void LineSmoother::substitute(int k) noexcept {
 }
 
 void LineSmoother::raise_weight(int k) noexcept {
-  // Divide by place, not by knot: the ends of a closed line share their places with its middle.
+  // Knots in the overlap of a closed line take the offset of their twin in the lap's middle part, which is
+  // the same point: both have the same weight then.
   const int extra = (knots_ - period_) / 2;
   int twin = k;
   if (period_ > 0 && k < extra) twin = k + period_;
   if (period_ > 0 && k >= extra + period_) twin = k - period_;
   const double ratio = std::fabs(offset_[static_cast<std::size_t>(twin)]) / width_;
   Row& now = row(k);
-  now.root_weight = std::max(kLeastWeight, now.root_weight * std::clamp(ratio, 0.4, 2.5));
+  now.root_weight = std::max(kLeastWeight, now.root_weight * std::clamp(ratio, kLeastChange, kMostChange));
 }
 
 namespace {
 
-constexpr double kSlopeReach = 3.0;   // [m] each way: shorter changes of curvature than a car are not felt
-constexpr double kLowestSpeed = 2.0;  // [m/s] the plan never asks to stop
-constexpr double kTraction = 0.85;    // share of the grip: brakes are not all where the load is
+constexpr double kSlopeReach = 3.0;   // [m] each way of a curvature slope; chosen: about a car's length
+constexpr double kLowestSpeed = 2.0;  // [m/s] lowest planned speed; chosen: the plan never stops the car
+constexpr double kTraction =
+    0.85;  // share of the grip; chosen: brakes do not share forces as the load is shared
 
-/// Largest v with v² demand <= share · friction · load(v).
+/// Largest speed v [m/s] with v² demand <= share · friction · load(v).
 double speed_for(double demand, const model::VehicleParams& p, double share) {
   const double grip = share * p.cornering_friction();
   const double g0 = grip * p.load_constant;
@@ -158,7 +162,8 @@ double speed_for(double demand, const model::VehicleParams& p, double share) {
   return (g1 + std::sqrt(g1 * g1 + 4.0 * d * g0)) / (2.0 * d);
 }
 
-/// Tyre force demanded per v² by curvature and its slope, at the axle that needs more (eq. 11) [1/m].
+/// Demand of lateral tyre force per v² by curvature and its slope, at the axle that needs more (eq. 11)
+/// [1/m].
 double demand_of(double curvature, double slope, const model::VehicleParams& p) {
   const double steady = (1.0 - p.steer_helper) * curvature;
   const double front = std::fabs(steady + p.yaw_inertia / (p.mass * p.rear_axle) * slope);
@@ -166,25 +171,25 @@ double demand_of(double curvature, double slope, const model::VehicleParams& p) 
   return std::max(front, rear);
 }
 
-/// Share of the grip that is planned with which the tyres use sideways.
+/// Lateral tyre force as a share of the planned grip.
 double use_of(double v, double demand, const model::VehicleParams& p, double grip) {
   return v * v * demand / (grip * p.cornering_friction() * p.load(v));
 }
 
-/// Share of the longitudinal force within the friction ellipse (1 for uncoupled tyres).
+/// Share of the longitudinal force that the friction ellipse leaves (1 for uncoupled tyres).
 double longitudinal_share(double use, const model::VehicleParams& p) {
   if (p.friction_coupling == 0.0) return 1.0;
   return std::sqrt(std::max(0.0, 1.0 - p.friction_coupling * std::min(1.0, use * use)));
 }
 
-/// Longitudinal force over mass that tyres which share it between the directions give on a straight road,
-/// whatever drive and brakes could: where the grip is less than the car is built for [m/s²].
+/// Limit of the longitudinal force over mass [m/s²] by the tyres' grip on a straight road; infinite for
+/// uncoupled tyres. Below the forces of drive and brakes on roads with less grip than the car is built for.
 double traction(double v, const model::VehicleParams& p) {
   if (p.friction_coupling == 0.0) return std::numeric_limits<double>::infinity();
   return kTraction * p.cornering_friction() * p.load(v);
 }
 
-/// Lowers the speed to `limit` and remembers why.
+/// Lowers the speed of a sample to `limit`, if it is higher, and stores the reason.
 void limit_to(double limit, SpeedLimiter reason, ReferenceLine::Sample& sample) {
   if (limit >= sample.speed) return;
   sample.speed = limit;
@@ -247,13 +252,13 @@ void SpeedPlan::finish_limits(ReferenceLine& line) noexcept {
   limit_to(std::max(end, kLowestSpeed), SpeedLimiter::kSight, line.samples().back());
 }
 
-/// Limits the acceleration once round a closed line from its slowest place, whose speed is final; on an open
-/// line from its beginning.
+/// Limits the speed behind a sample by the drive. The pass goes once round a closed line from its slowest
+/// sample, whose speed is final; along an open line from its beginning.
 void SpeedPlan::accelerate(ReferenceLine& line, int turn) noexcept {
-  const int laps = static_cast<int>(line.samples().size()) - 1;
-  const int at = (slowest_ + turn) % laps;
+  const int intervals = static_cast<int>(line.samples().size()) - 1;
+  const int at = (slowest_ + turn) % intervals;
   const auto from = static_cast<std::size_t>(at);
-  const std::size_t to = line.is_closed() && at + 1 == laps ? 0 : from + 1;
+  const std::size_t to = line.is_closed() && at + 1 == intervals ? 0 : from + 1;
   const double v = line.samples()[from].speed;
   const double share = longitudinal_share(use_of(v, demand_[from], vehicle_, options_.grip_share), vehicle_);
   const double drag = longitudinal_acceleration(vehicle_, 0.0, v);
@@ -263,12 +268,13 @@ void SpeedPlan::accelerate(ReferenceLine& line, int turn) noexcept {
   limit_to(std::sqrt(squared), SpeedLimiter::kPower, line.samples()[to]);
 }
 
-/// The same the other way round; an open line from its end.
+/// Limits the speed before a sample by the brakes. The pass goes backwards, from the slowest sample of a
+/// closed line or the end of an open one.
 void SpeedPlan::brake(ReferenceLine& line, int turn) noexcept {
-  const int laps = static_cast<int>(line.samples().size()) - 1;
-  const int at = line.is_closed() ? (slowest_ + laps - turn) % laps : laps - turn;
+  const int intervals = static_cast<int>(line.samples().size()) - 1;
+  const int at = line.is_closed() ? (slowest_ + intervals - turn) % intervals : intervals - turn;
   const auto from = static_cast<std::size_t>(at);
-  const std::size_t to = at == 0 ? static_cast<std::size_t>(laps - 1) : from - 1;
+  const std::size_t to = at == 0 ? static_cast<std::size_t>(intervals - 1) : from - 1;
   const ReferenceLine::Sample& ahead = line.samples()[from];
   const double v = ahead.speed;
   const double use = use_of(v, demand_[from], vehicle_, options_.grip_share);
@@ -279,7 +285,7 @@ void SpeedPlan::brake(ReferenceLine& line, int turn) noexcept {
   const double a =
       std::min(options_.brake_share * share * force, stability_.most_braking(v, options_.grip_share * use)) -
       drag;
-  // Braking for the end of sight is for want of sight.
+  // A speed before a sample limited by sight has the same reason.
   const bool is_blind = ahead.limiter == SpeedLimiter::kSight;
   limit_to(std::sqrt(v * v + 2.0 * a * line.spacing()),
            is_blind ? SpeedLimiter::kSight : SpeedLimiter::kBraking, line.samples()[to]);
@@ -289,9 +295,11 @@ namespace {
 
 constexpr int kFewestIntervals = 5;  // the smoother needs six knots
 
+/// Phases of the LinePlanner.
 enum Phase { kTake, kSmooth, kMove, kShape, kSample, kSpeed, kDone };
 
-/// Weight of the curvature's slope relative to curvature (eq. 9): the yaw inertia against the tyres' share.
+/// ℓ of the LineSmoother [m] (eq. 9): the yaw inertia against the tyres' share of the lateral force. The
+/// bounds keep it plausible for any parameters.
 double slope_length(const model::VehicleParams& vehicle) noexcept {
   const double length = vehicle.yaw_inertia / (vehicle.mass * vehicle.rear_axle);
   return std::clamp(length / std::max(0.05, 1.0 - vehicle.steer_helper), 1.0, 10.0);
@@ -317,7 +325,8 @@ bool LinePlanner::begin(double from, double to, bool is_lap) noexcept {
   const double wanted = std::ceil(length_ / WaypointLine::kSpacing);
   if (!(length_ > 0.0 && wanted < static_cast<double>(knots_.size()))) return false;
   intervals_ = std::max(static_cast<int>(wanted), kFewestIntervals);
-  // A lap is divided evenly. A stretch keeps the knots of its source; its last one may lie beyond its end.
+  // A lap is divided evenly. A stretch has the knots of the waypoint line; its last knot may lie beyond its
+  // end.
   spacing_ = is_lap ? length_ / intervals_ : WaypointLine::kSpacing;
   extra_ = is_lap ? std::min(kOverlap, intervals_) : 0;
   smoother_.begin(is_lap ? intervals_ + 2 * extra_ : intervals_ + 1, spacing_, is_lap ? intervals_ : 0);
@@ -377,18 +386,18 @@ double LinePlanner::offset(int k) const noexcept {
   k = (k + intervals_) % intervals_;
   const double n = smoother_.offset(k + extra_);
   if (k >= extra_) return n;
-  // Beyond the seam the line was smoothed twice, once as the continuation of its own end: fade from one to
-  // the other.
+  // The first knots of the lap were smoothed twice, the second time as the continuation of its end: fades
+  // from the second offset to the first, so that the lap closes without a step.
   const double share = static_cast<double>(k) / extra_;
   return share * n + (1.0 - share) * smoother_.offset(k + extra_ + intervals_);
 }
 
-/// Knot k of the line moved by its offset: position, tangent and curvature follow from n, n', n'' exactly.
+/// Position, tangent and curvature of the moved knot follow from n, n' and n'' exactly.
 void LinePlanner::move(int k) noexcept {
   const auto i = static_cast<std::size_t>(k);
   const CurvePoint& raw = knots_[i];
   const double n = offset(k);
-  // At the ends of a stretch, take the bend of the neighbouring knots.
+  // The ends of a stretch take n'' and the curvature slope of their neighbours.
   const int inner = is_lap_ ? k : std::clamp(k, 1, intervals_ - 1);
   const double before = offset(inner - 1);
   const double after = offset(inner + 1);
@@ -420,7 +429,7 @@ void LinePlanner::move(int k) noexcept {
 }
 
 bool LinePlanner::shape(ReferenceLine& line) noexcept {
-  // The end of the stretch lies between two knots.
+  // Length of the new line: the end of a stretch lies between two knots.
   const int index = std::min(static_cast<int>(length_ / spacing_), intervals_ - 1);
   const double before = moved_[static_cast<std::size_t>(index)].s;
   const double after = moved_[static_cast<std::size_t>(index + 1)].s;

@@ -13,15 +13,18 @@
 namespace chicane::road {
 namespace {
 
-constexpr int kArcLengthPasses = 2;  // corrections of the parameter; a third changes 1e-7 of the length
+constexpr int kArcLengthPasses =
+    2;  // corrections of the parameter; measured: a third changes 1e-7 of the length
 constexpr double kMinSpeedSquared = 1e-12;  // |r'|² below this is a cusp: keeps curvature finite
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
+/// Reason why points are no curve.
 struct Fault {
-  std::size_t point = 0;
-  const char* expected = nullptr;
+  std::size_t point = 0;           // index of the point
+  const char* expected = nullptr;  // null: too few points
 };
 
-/// The first thing that keeps the points from being a curve.
+/// First fault of the points; none if they are a curve.
 std::optional<Fault> find_fault(std::span<const Vec2> points, bool closed) noexcept {
   if (points.size() < (closed ? 3U : 2U)) return Fault{points.size(), nullptr};
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -36,8 +39,6 @@ std::optional<Fault> find_fault(std::span<const Vec2> points, bool closed) noexc
   }
   return std::nullopt;
 }
-
-double cross(const Vec2& a, const Vec2& b) noexcept { return a.x() * b.y() - a.y() * b.x(); }
 
 }  // namespace
 
@@ -107,8 +108,8 @@ void Path::solve_natural(std::span<const Vec2> points) noexcept {
 }
 
 void Path::solve_periodic(std::span<const Vec2> points) noexcept {
-  // Periodic version of the system above, with neighbours modulo n. The last unknown m* is set aside: m = u +
-  // w m*, where `corner` carries w; the last row then gives m*.
+  // System of solve_natural() with neighbours modulo n. The last unknown m* is set aside: m = u + w m*, where
+  // `corner` is w; the last row then gives m*.
   const std::size_t n = points.size();
   const std::size_t last = n - 1;
   const double closing = segments_[last].h;
@@ -170,8 +171,6 @@ void Path::fit(std::span<const Vec2> points) noexcept {
 }
 
 void Path::index() noexcept {
-  // Arc length and heading of each segment's start; then the segment at the start of each of count_ equal
-  // cells.
   const auto count = static_cast<std::size_t>(count_);
   length_ = 0.0;
   double heading = atan2(segments_[0].b.y(), segments_[0].b.x());
@@ -181,10 +180,10 @@ void Path::index() noexcept {
     segment.heading = heading;
     const Vec2 half = segment.b + segment.h * (segment.c + 0.75 * segment.h * segment.e);
     const Vec2 end = segment.b + segment.h * (2.0 * segment.c + 3.0 * segment.h * segment.e);
-    if (segment.b.dot(half) > 0.0 && half.dot(end) > 0.0) {  // two quarter turns at most
-      heading += atan2(cross(segment.b, end), segment.b.dot(end));
+    if (segment.b.dot(half) > 0.0 && half.dot(end) > 0.0) {  // each half turns by less than a quarter turn
+      heading += atan2(segment.b.cross(end), segment.b.dot(end));
     } else {
-      heading += atan2(cross(segment.b, half), segment.b.dot(half)) + atan2(cross(half, end), half.dot(end));
+      heading += atan2(segment.b.cross(half), segment.b.dot(half)) + atan2(half.cross(end), half.dot(end));
     }
     length_ += segment.h;
   }
@@ -200,7 +199,7 @@ void Path::index() noexcept {
 
 int Path::segment_at(double s) const noexcept {
   const int cell = std::clamp(static_cast<int>(s / length_ * count_), 0, count_ - 1);
-  // One cell early and late, for s on the border of two cells after rounding.
+  // Includes the neighbouring cells, as rounding can move s across the border of two cells.
   const auto first = segments_.begin() + cells_[static_cast<std::size_t>(std::max(cell - 1, 0))];
   const auto end =
       segments_.begin() + (cell + 2 < count_ ? cells_[static_cast<std::size_t>(cell + 2)] + 1 : count_);
@@ -226,7 +225,6 @@ double Path::difference(double s1, double s0) const noexcept {
 PathPoint Path::at(double s) const noexcept {
   if (is_empty()) return {};
   if (!std::isfinite(s)) {
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     return {Vec2{kNan, kNan}, kNan, kNan, kNan};
   }
   const double inside = wrap(s);
@@ -238,7 +236,7 @@ PathPoint Path::at(double s) const noexcept {
 
   PathPoint point;
   point.position = segment.a + t * (segment.b + t * (segment.c + t * segment.e));
-  point.heading = segment.heading + atan2(cross(segment.b, first), segment.b.dot(first));
+  point.heading = segment.heading + atan2(segment.b.cross(first), segment.b.dot(first));
   const double beyond = s - inside;
   if (!closed_ && beyond != 0.0) {
     point.position += beyond / std::max(first.norm(), std::sqrt(kMinSpeedSquared)) * first;
@@ -247,8 +245,8 @@ PathPoint Path::at(double s) const noexcept {
   if (closed_ && beyond != 0.0) point.heading += turning_ * std::round(beyond / length_);
   const double speed_squared = std::max(first.squared_norm(), kMinSpeedSquared);
   const double speed = std::sqrt(speed_squared);
-  point.curvature = cross(first, second) / (speed_squared * speed);
-  point.curvature_slope = (cross(first, third) / (speed_squared * speed) -
+  point.curvature = first.cross(second) / (speed_squared * speed);
+  point.curvature_slope = (first.cross(third) / (speed_squared * speed) -
                            3.0 * point.curvature * first.dot(second) / speed_squared) /
                           speed;
   return point;
@@ -256,10 +254,12 @@ PathPoint Path::at(double s) const noexcept {
 
 namespace {
 
-constexpr double kBetterFit = 0.1;  // least gain in heading fit of another pass over the nearest [rad]
-constexpr int kSamples = 4;         // intervals scanned for the start of the refinement
-constexpr int kIterations = 30;     // limit of Newton's method, safeguarded by bisection; 3 or 4 are typical
+constexpr double kBetterFit =
+    0.1;                         // least gain in heading fit of another pass over the nearest [rad]; chosen
+constexpr int kSamples = 4;      // intervals scanned for the start of Newton's method; chosen
+constexpr int kIterations = 30;  // limit of Newton's method, safeguarded by bisection; 3 or 4 are typical
 
+/// Nearest point of a segment.
 struct Foot {
   double distance_squared = std::numeric_limits<double>::infinity();
   double s = 0.0;
@@ -267,6 +267,7 @@ struct Foot {
   Vec2 tangent{};  // tangent, not normalised
 };
 
+/// Distance of a point from the chord of a segment [m].
 template <class Segment>
 double chord_distance(const Segment& segment, const Vec2& point) noexcept {
   const Vec2 chord = segment.h * (segment.b + segment.h * (segment.c + segment.h * segment.e));
@@ -274,8 +275,8 @@ double chord_distance(const Segment& segment, const Vec2& point) noexcept {
   return (gap - std::clamp(gap.dot(chord) / chord.squared_norm(), 0.0, 1.0) * chord).norm();
 }
 
-/// Nearest point of a segment for t in [low, high]: best of a few samples, then the root of gap · tangent
-/// around it.
+/// Nearest point of a segment for t in [low, high]: the best of a few samples, then the root of gap · tangent
+/// around that sample by Newton's method.
 template <class Segment>
 Foot nearest_on(const Segment& segment, const Vec2& point, double low, double high) noexcept {
   const auto gap_at = [&](double t) -> Vec2 {
@@ -300,7 +301,7 @@ Foot nearest_on(const Segment& segment, const Vec2& point, double low, double hi
   for (int k = 0; k < kIterations; ++k) {
     const Vec2 gap = gap_at(t);
     const Vec2 tangent = tangent_at(t);
-    const double ahead = gap.dot(tangent);  // positive: the foot lies further on
+    const double ahead = gap.dot(tangent);  // positive: the foot lies at a larger t
     (ahead > 0.0 ? low : high) = t;
     const double newton =
         t + ahead / (tangent.squared_norm() - gap.dot(2.0 * segment.c + 6.0 * t * segment.e));
@@ -317,7 +318,6 @@ Foot nearest_on(const Segment& segment, const Vec2& point, double low, double hi
 
 template <class Visit>
 void Path::for_each_segment(double s_low, double s_high, Visit&& visit) const noexcept {
-  // The parts of segments within [s_low, s_high]: s_low in [0, length], at most one lap.
   double s = s_low;
   int i = segment_at(s_low);
   double low = s_low - segments_[static_cast<std::size_t>(i)].s0;
@@ -333,8 +333,8 @@ void Path::for_each_segment(double s_low, double s_high, Visit&& visit) const no
 }
 
 Projection Path::search(const Vec2& point, double s_low, double s_high) const noexcept {
-  // A segment with the distance of its chord. A segment stays within `bulge` of its chord: after the one with
-  // the nearest chord, only segments that can hold a nearer point are searched.
+  // Searches the segment with the nearest chord first. A segment stays within `bulge` of its chord, so that
+  // of the others only those are searched that can have a nearer point.
   struct Part {
     const Segment* segment = nullptr;
     double low = 0.0;
@@ -348,7 +348,6 @@ Projection Path::search(const Vec2& point, double s_low, double s_high) const no
     first = {&segment, low, high};
   });
   if (first.segment == nullptr) {  // only for a point that is not finite
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     return {wrap(s_low), kNan, kNan};
   }
   Foot foot = nearest_on(*first.segment, point, first.low, first.high);
@@ -360,8 +359,7 @@ Projection Path::search(const Vec2& point, double s_low, double s_high) const no
     if (rival.distance_squared < foot.distance_squared) foot = rival;
   });
   const double speed = std::max(foot.tangent.norm(), 1e-12);
-  const double left = (foot.tangent.x() * foot.gap.y() - foot.tangent.y() * foot.gap.x()) / speed;
-  return {wrap(foot.s), left, std::sqrt(foot.distance_squared)};
+  return {wrap(foot.s), foot.tangent.cross(foot.gap) / speed, std::sqrt(foot.distance_squared)};
 }
 
 Projection Path::project(const Vec2& point) const noexcept {
@@ -377,7 +375,7 @@ Projection Path::project_along(const Vec2& point, double heading, double reach) 
   const double most = nearest.distance + reach;
   Projection best = nearest;
   double least = misfit(nearest.s);
-  // A pass: the nearest of neighbouring segments that come near enough.
+  // A pass: among consecutive segments near enough, the one with the nearest chord.
   const Segment* pass = nullptr;
   double pass_distance = 0.0;
   const auto end_pass = [&] {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Racing roads: a planned lap resampled by its own arc length, with the room to both edges across its line.
+// Planned laps: interpolation, conversion to lines and roads as plain data, and resampling by the arc length
+// of the line as a RacingRoad.
 #include "chicane/road/racing_road.hpp"
 
 #include <algorithm>
@@ -41,7 +42,7 @@ RoadData road_data(const Track& track, double spacing) {
   RoadData road;
   road.is_closed = centre.is_closed();
   road.length = centre.length();
-  // The small reduction absorbs rounding: a length that is a multiple of the spacing takes no extra interval.
+  // 1e-9 absorbs rounding: a length that is a multiple of the spacing takes no extra interval.
   const auto intervals = static_cast<std::size_t>(std::max(1.0, std::ceil(road.length / spacing - 1e-9)));
   road.points.reserve(intervals + 1);
   for (std::size_t k = 0; k <= intervals; ++k) {
@@ -77,76 +78,78 @@ std::vector<LinePoint> line_points(const Track& track, const RacingLine& line) {
   }
   const std::size_t last = points.size() - 1;
   const bool is_closed = centre.is_closed();
-  // At the end of a lap the heading is the start's plus the road's turning.
+  // Whole turns alone tell the last heading of a lap from the first.
   if (is_closed)
     points[last].heading =
         points[0].heading + kTwoPi * std::round((points[last].heading - points[0].heading) / kTwoPi);
   for (std::size_t i = 0; i < last; ++i) {
     const std::size_t before = i > 0 ? i - 1 : (is_closed ? last - 1 : 0);
-    const double turned = wrap_angle(points[i + 1].heading - points[before].heading);
-    double taken = points[i + 1].time - points[before].time;
-    if (taken < 0.0) taken += line.lap_time();
+    const double turn = wrap_angle(points[i + 1].heading - points[before].heading);
+    double duration = points[i + 1].time - points[before].time;
+    if (duration < 0.0) duration += line.lap_time();
     LinePoint& p = points[i];
-    p.curvature = turned / taken / p.speed;
+    p.curvature = turn / duration / p.speed;
     p.lateral_acceleration = p.speed * p.speed * p.curvature;
-    const double faster = points[i + 1].speed - points[before].speed;
-    p.longitudinal_acceleration = faster / taken;
+    p.longitudinal_acceleration = (points[i + 1].speed - points[before].speed) / duration;
   }
-  const LinePoint& like = points[is_closed ? 0 : last - 1];
-  points[last].curvature = like.curvature;
-  points[last].lateral_acceleration = like.lateral_acceleration;
-  points[last].longitudinal_acceleration = like.longitudinal_acceleration;
+  const LinePoint& neighbour = points[is_closed ? 0 : last - 1];
+  points[last].curvature = neighbour.curvature;
+  points[last].lateral_acceleration = neighbour.lateral_acceleration;
+  points[last].longitudinal_acceleration = neighbour.longitudinal_acceleration;
   return points;
 }
 
 namespace {
 
-CurvePoint curve_of(const road::LinePoint& point) {
+CurvePoint curve_of(const LinePoint& point) {
   return {.position = point.position,
           .tangent = {cos(point.heading), sin(point.heading)},
           .heading = point.heading,
           .curvature = point.curvature};
 }
 
-/// Arc length between two points of a line: the chord, and what its bend adds.
-double length_between(const road::LinePoint& from, const road::LinePoint& to) {
+/// Arc length between two points of a line [m]: the chord, lengthened as an arc of the same turn.
+double length_between(const LinePoint& from, const LinePoint& to) {
   const double chord = (to.position - from.position).norm();
   const double turn = to.heading - from.heading;
   return chord * (1.0 + turn * turn / 24.0);
 }
 
-std::vector<double> arc_lengths(std::span<const road::LinePoint> lap) {
+/// Arc length of the line at each point of a lap [m].
+std::vector<double> arc_lengths(std::span<const LinePoint> lap) {
   std::vector<double> s(lap.size());
   for (std::size_t i = 1; i < lap.size(); ++i) s[i] = s[i - 1] + length_between(lap[i - 1], lap[i]);
   return s;
 }
 
-constexpr std::size_t kLeastPoints = 8;
-// A car stops kBehindTheEnd behind a point: kBeforeTheEnd before the end of an open road, or before its
-// finish if less room is behind that, so that the finish is passed [m].
-constexpr double kBeforeTheEnd = 14.0;
-constexpr double kBehindTheEnd = 2.0;
-constexpr double kFootReach = 12.0;  // reach along the road, from the foot of a sample to the next foot [m]
-constexpr double kNear = 4.0;        // [m] a nearer edge is found across the line: it may be driven along
-constexpr int kSteps = 4;            // iterations that find a near edge
+constexpr std::size_t kLeastPoints = 8;  // chosen: fewer are no lap
+// Stop at the end of an open road: aimed at kBehindStop behind a point that lies kBeforeEnd before the road's
+// end, or at the finish where less room is behind it, so that the car passes the finish. Chosen: a car's
+// length or three of reserve.
+constexpr double kBeforeEnd = 14.0;  // [m]
+constexpr double kBehindStop = 2.0;  // [m]
+constexpr double kFootReach = 12.0;  // [m] search along the road from the foot of a sample to the next foot
+constexpr double kNear = 4.0;  // [m] nearer edges are measured across the line: cars may drive along them
+constexpr int kSteps = 4;      // iterations that find a near edge
 
-/// Distance from `here`, whose foot on the road's line is near s, to the edge on the left (side 1) or right
-/// (-1).
+/// Distance [m] from the point `here`, whose foot on the track's centre line is near s, across its tangent to
+/// the edge on the left (side 1) or right (−1).
 double room_beside(const Track& track, const CurvePoint& here, double s, double side) noexcept {
   const Vec2 across = side * Vec2{-here.tangent.y(), here.tangent.x()};
-  const auto left_over = [&](double way) {
-    const Projection foot = track.centre().project(here.position + way * across, s, kFootReach);
+  // Gap to the edge, across the centre line, from the point `away` [m] beside `here`.
+  const auto gap = [&](double away) {
+    const Projection foot = track.centre().project(here.position + away * across, s, kFootReach);
     const double width = side > 0.0 ? track.left_width(foot.s) : track.right_width(foot.s);
     return width + track.kerb_width() - side * foot.d;
   };
-  double room = left_over(0.0);
-  for (int k = 0; k < kSteps && room < kNear; ++k) room += left_over(room);
+  double room = gap(0.0);
+  for (int k = 0; k < kSteps && room < kNear; ++k) room += gap(room);
   return room;
 }
 
 }  // namespace
 
-RacingRoad::RacingRoad(std::span<const road::LinePoint> lap, double kerb, const Basis& basis)
+RacingRoad::RacingRoad(std::span<const LinePoint> lap, double kerb, const Basis& basis)
     : line_{0}, basis_{basis} {
   if (lap.size() < kLeastPoints) return;
   const std::vector<double> s = arc_lengths(lap);
@@ -160,8 +163,8 @@ RacingRoad::RacingRoad(std::span<const road::LinePoint> lap, double kerb, const 
   for (std::size_t i = 0; i < rooms_.size(); ++i) {
     const double at = std::min(static_cast<double>(i) * line_.spacing(), length);
     while (from + 2 < lap.size() && s[from + 1] < at) ++from;
-    const road::LinePoint& a = lap[from];
-    const road::LinePoint& b = lap[from + 1];
+    const LinePoint& a = lap[from];
+    const LinePoint& b = lap[from + 1];
     const double piece = s[from + 1] - s[from];
     const double share = std::clamp((at - s[from]) / piece, 0.0, 1.0);
     const auto blend = [&](double of_a, double of_b) { return of_a + share * (of_b - of_a); };
@@ -176,8 +179,8 @@ RacingRoad::RacingRoad(std::span<const road::LinePoint> lap, double kerb, const 
   if (!basis.is_closed) stop_at_end();
 }
 
-void RacingRoad::look_at(const Track& track, std::span<const road::LinePoint> lap) noexcept {
-  if (!basis_.terms.slides) return;  // cars that do not slide keep to the line
+void RacingRoad::measure_rooms(const Track& track, std::span<const LinePoint> lap) noexcept {
+  if (!basis_.terms.slides) return;  // a car that does not slide stays near the line
   double s = rooms_.empty() ? 0.0 : lap.front().s;
   for (std::size_t i = 0; i < rooms_.size(); ++i) {
     const CurvePoint& here = line_.samples()[i].curve;
@@ -189,10 +192,10 @@ void RacingRoad::look_at(const Track& track, std::span<const road::LinePoint> la
 
 void RacingRoad::stop_at_end() noexcept {
   const std::span<ReferenceLine::Sample> samples = line_.samples();
-  const double end = line_.length() - std::min(kBeforeTheEnd, basis_.room_behind) + kBehindTheEnd;
+  const double end = line_.length() - std::min(kBeforeEnd, basis_.room_behind) + kBehindStop;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const double way = std::max(0.0, end - static_cast<double>(i) * line_.spacing());
-    samples[i].speed = std::min(samples[i].speed, std::sqrt(2.0 * basis_.braking * way));
+    const double left = std::max(0.0, end - static_cast<double>(i) * line_.spacing());
+    samples[i].speed = std::min(samples[i].speed, std::sqrt(2.0 * basis_.braking * left));
   }
   samples.back().speed = 0.0;
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reference lines: look-up and projection along samples with speeds, and the table of reasons that limit the
-// speed.
+// Reference lines: interpolation between samples, and projection of points.
 #include "chicane/road/reference_line.hpp"
 
 #include <algorithm>
@@ -12,7 +11,8 @@
 namespace chicane::road {
 namespace {
 
-constexpr double kBetterPass = 0.1;  // least gain in heading fit of another pass over the nearest [rad]
+constexpr double kBetterPass =
+    0.1;  // least gain in heading fit of another pass over the nearest [rad]; chosen
 
 }  // namespace
 
@@ -101,7 +101,7 @@ ReferenceLine::Projection ReferenceLine::project_along(const Vec2& point, double
   const double most = nearest.distance + reach;
   Projection best = nearest;
   double least = misfit(nearest);
-  // A pass: the nearest of neighbouring samples that are near enough.
+  // A pass: among consecutive samples near enough, the nearest one.
   std::size_t pass = count_;
   double pass_distance = 0.0;
   for (std::size_t i = 0; i <= count_; ++i) {
@@ -158,12 +158,12 @@ ReferenceLine::Projection ReferenceLine::find(const Vec2& point, double heading,
 }
 
 ReferenceLine::Projection ReferenceLine::refine(const Vec2& point, std::size_t nearest) const noexcept {
-  constexpr int kTurns = 4;  // steps of Newton's method; from at most half a sample away three reach 1e-9 m
+  constexpr int kNewtonSteps = 4;  // measured: three reach 1e-9 m from half a sample away
   double s = static_cast<double>(nearest) * spacing_;
   CurvePoint foot = at(s);
   Vec2 gap = point - foot.position;
-  const auto left = [&] { return foot.tangent.x() * gap.y() - foot.tangent.y() * gap.x(); };
-  for (int turn = 0; turn < kTurns; ++turn) {
+  const auto left = [&] { return foot.tangent.cross(gap); };
+  for (int step = 0; step < kNewtonSteps; ++step) {
     const double ahead = gap.dot(foot.tangent) / std::max(0.2, 1.0 - foot.curvature * left());
     s += std::clamp(ahead, -spacing_, spacing_);
     if (!is_closed_) s = std::clamp(s, 0.0, length_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Road that a controller learns: map of waypoints, stretch and lap, planned in instalments.
+// Road that a controller learns: adds waypoints to the map, and plans stretch and lap in instalments.
 #include "chicane/road/road.hpp"
 
 #include <algorithm>
@@ -9,8 +9,10 @@
 namespace chicane::road {
 namespace {
 
-constexpr int kRoundTheSeam = 90;                  // knots are enough until the lap is planned
-constexpr int kSeam = WaypointLine::kSettled + 1;  // waypoint where laps begin: drawn with others before it
+// Knots of a stretch on a closed road. Chosen: 270 m, enough until the lap is planned.
+constexpr int kClosedStretchKnots = 90;
+// Waypoint at which laps begin. Derived: the first one whose curve other waypoints before it have shaped.
+constexpr int kSeam = WaypointLine::kSettled + 1;
 
 }  // namespace
 
@@ -70,30 +72,27 @@ void Road::add(const model::Measurement& now) noexcept {
   if (!map_.is_closed()) {
     if (has_grown && waypoints_.extend(map_, static_cast<int>(map_.points().size()) - 1)) plan_stretch();
   } else if (!is_lap_ && waypoints_.newest() < newest_needed(now)) {
-    go_round(newest_needed(now), shares);
+    extend_past_seam(newest_needed(now), shares);
   } else if (!is_lap_ || is_lap_begun_) {
     plan_lap(shares);
   }
 }
 
-/// Shares of planning due at a measurement: where measurements come rarely, there is more time for each.
 int Road::shares_until(double time) noexcept {
   const double shares = std::round((time - time_) / kShare);
   time_ = time;
   return shares >= 1.0 ? static_cast<int>(std::min(shares, static_cast<double>(kMostShares))) : 1;
 }
 
-/// The waypoint up to which the line of a closed map is drawn: on into the second lap as far as the first
-/// piece of it is settled, and as far as the car sees.
 int Road::newest_needed(const model::Measurement& now) const noexcept {
+  // Far enough into the second lap that its curve at the seam is settled, and as far as the car sees.
   const int count = static_cast<int>(map_.points().size());
   const int first = map_.first_seen() < count / 2 ? map_.first_seen() + count : map_.first_seen();
   return std::max(count + kSeam + WaypointLine::kSettled, first + now.waypoint_count - 1);
 }
 
-/// Extends a closed map's line past the seam, a few waypoints in each share, then plans the stretch again.
-void Road::go_round(int newest, int shares) noexcept {
-  constexpr int kAtOnce = 3;
+void Road::extend_past_seam(int newest, int shares) noexcept {
+  constexpr int kAtOnce = 3;  // waypoints in a share; chosen: a few µs
   for (int share = 0; share < shares && waypoints_.newest() < newest; ++share) {
     const int to = std::min(newest, waypoints_.newest() + kAtOnce);
     if (waypoints_.extend(map_, to) && to == newest) plan_stretch();
@@ -105,9 +104,9 @@ void Road::plan_stretch() noexcept {
   int first = map_.first_seen();
   if (first + count <= waypoints_.newest()) first += count;
   const double from = std::max(0.0, waypoints_.along(first) - kBehind);
-  // Begin at one of the waypoint line's own knots, so that the settled part stays the same.
+  // Begins at a knot of the waypoint line, so that the settled part stays the same.
   const double knot = std::floor(from / WaypointLine::kSpacing) * WaypointLine::kSpacing;
-  const double most = (map_.is_closed() ? kRoundTheSeam : kStretchKnots - 2) * WaypointLine::kSpacing;
+  const double most = (map_.is_closed() ? kClosedStretchKnots : kStretchKnots - 2) * WaypointLine::kSpacing;
   const double to = std::min(waypoints_.along(waypoints_.newest()), knot + most);
   stretch_.clear();
   ++revision_;
@@ -119,11 +118,8 @@ void Road::plan_lap(int shares) noexcept {
   const std::size_t other = 1 - current_lap_;
   if (!is_lap_begun_) {
     const int count = static_cast<int>(map_.points().size());
-    is_lap_begun_ = true;
-    if (!lap_planner_.begin(waypoints_.along(kSeam), waypoints_.along(kSeam + count), true)) {
-      is_lap_begun_ = false;
-      return;
-    }
+    is_lap_begun_ = lap_planner_.begin(waypoints_.along(kSeam), waypoints_.along(kSeam + count), true);
+    if (!is_lap_begun_) return;
   }
   if (!lap_planner_.advance(shares * kLapWork, waypoints_, laps_[other])) return;
   is_lap_begun_ = false;

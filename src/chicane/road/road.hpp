@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Road: what a controller learns of its road from waypoints, planned into a line to drive by.
 #pragma once
 
 #include <array>
@@ -15,8 +16,8 @@ namespace chicane::road {
 /// Options for turning waypoints into the road that a controller drives on.
 struct RoadOptions {
   double half_width = 3.0;  ///< room for the centre of mass each side of the waypoint line [m]
-  double smoothing_width =
-      1.5;  ///< the reference line may leave the waypoint line by this much [m]; 0 = none
+  /// Largest distance of the reference line from the waypoint line [m]; 0: the waypoint line itself.
+  double smoothing_width = 1.5;
   bool remember_waypoints = true;  ///< false: waypoints of the last measurement only
   SpeedPlanOptions speed{};
 
@@ -24,55 +25,63 @@ struct RoadOptions {
 };
 
 /// Road as a controller knows it: remembered waypoints, a smooth reference line along them with its speeds,
-/// and the room left and right of it. All memory is reserved at construction.
+/// and the room left and right of that line. All memory is reserved at construction.
 ///
-/// Until a lap is known the line reaches from a little behind the car to the last waypoint seen, and is
-/// planned again with each new one. When the loop closes, the lap is planned during the drive, kLapWork for
-/// each kShare that has passed, and takes over when it is ready: 3 to 5 s for a lap of 1.3 km, however rarely
-/// measurements come. So add() is bounded, by about 30 µs when it is called every kShare
+/// Until the loop closes, the line is a stretch from a little behind the car to the last waypoint seen, and
+/// is planned again with each new waypoint. Then the lap is planned during the drive, kLapWork units for each
+/// kShare of time, and replaces the stretch when it is ready: after 3 to 5 s for a lap of 1.3 km, however
+/// rarely measurements come. So add() is bounded, by about 30 µs when it is called every kShare
 /// (docs/controller.md), and does the same work for the same measurements.
 class Road {
  public:
   Road(const RoadOptions& options, const model::VehicleParams& vehicle);
+  /// Forgets all waypoints.
   void reset() noexcept;
   /// Applies other settings to the same road: if they differ, everything is planned again.
   void configure(const RoadOptions& options, const model::VehicleParams& vehicle) noexcept;
 
-  /// Takes in the waypoints of a measurement, and does this cycle's share of the planning.
+  /// Adds the waypoints of a measurement to the map, and does this cycle's share of the planning.
   void add(const model::Measurement& now) noexcept;
 
-  /// The reference line in W; empty while nothing is known.
+  /// Reference line in W; empty while no waypoints are known.
   [[nodiscard]] const ReferenceLine& line() const noexcept {
     return is_lap_ ? laps_[current_lap_] : stretch_;
   }
+  /// Distances that the centre of mass may move to both sides of a line.
   struct Room {
     double left = 0.0;   ///< [m]
     double right = 0.0;  ///< [m]
   };
-  /// Room for the centre of mass on both sides of the reference line where it has moved sideways by `offset`
-  /// [m].
+  /// Room on both sides of the reference line where it is `offset` [m] left of the waypoint line.
   [[nodiscard]] Room room(double offset) const noexcept {
     return {options_.half_width - offset, options_.half_width + offset};
   }
-  /// Number of the line: positions along an older one are void.
+  /// Number that changes with the line. Positions along an older line are invalid.
   [[nodiscard]] unsigned revision() const noexcept { return revision_; }
-  /// The waypoints of a closed road in driving order, once its lap is planned; empty before.
+  /// Waypoints of a closed road in driving order, once its lap is planned; empty before.
   [[nodiscard]] std::span<const Vec2> closed_waypoints() const noexcept {
     return is_lap_ ? map_.points() : std::span<const Vec2>{};
   }
 
  private:
-  static constexpr double kShare = 0.04;     ///< [s] of driving that pay for one share of planning
-  static constexpr int kMostShares = 8;      ///< limit in one measurement, however long ago the last one is
-  static constexpr int kLapWork = 1500;      ///< units of LinePlanner in each share
-  static constexpr int kStretchKnots = 128;  ///< 380 m
-  static constexpr double kBehind = 60.0;    ///< [m] start of the line behind the first waypoint seen
+  // Chosen so that a cycle of 40 ms spends 15 µs on a lap, which is planned before the car has gone far on
+  // it.
+  static constexpr double kShare = 0.04;     ///< time that allows one share of planning [s]
+  static constexpr int kMostShares = 8;      ///< limit of shares in one measurement, after any time
+  static constexpr int kLapWork = 1500;      ///< units of work of LinePlanner in each share, 10 ns each
+  static constexpr int kStretchKnots = 128;  ///< limit of a stretch; 380 m, more than six waypoints reach
+  static constexpr double kBehind = 60.0;    ///< start of a stretch before the first waypoint seen [m]
 
   void configure_planners() noexcept;
+  /// Number of shares due at a measurement, by the time since the last one.
   [[nodiscard]] int shares_until(double time) noexcept;
-  void go_round(int newest, int shares) noexcept;
+  /// Extends the waypoint line of a closed map up to waypoint `newest`, a few waypoints in each share; then
+  /// plans the stretch again.
+  void extend_past_seam(int newest, int shares) noexcept;
   void plan_stretch() noexcept;
+  /// Continues the plan of the lap by some shares, or begins one.
   void plan_lap(int shares) noexcept;
+  /// Number of the waypoint up to which the waypoint line of a closed map has to reach.
   [[nodiscard]] int newest_needed(const model::Measurement& now) const noexcept;
 
   RoadOptions options_;
@@ -82,13 +91,13 @@ class Road {
   LinePlanner stretch_planner_;
   LinePlanner lap_planner_;
   ReferenceLine stretch_;
-  std::array<ReferenceLine, 2> laps_;  ///< one to drive by, one to be planned
-  std::size_t current_lap_ = 0;
-  unsigned generation_ = 0;  ///< generation of the map that the lines belong to
-  unsigned revision_ = 0;
-  double time_ = 0.0;          ///< time of the last measurement [s]
-  bool is_lap_ = false;        ///< the current lap is driven by
-  bool is_lap_begun_ = false;  ///< the other one is being planned
+  std::array<ReferenceLine, 2> laps_;  ///< the current lap, and the one being planned
+  std::size_t current_lap_ = 0;        ///< index of the current lap
+  unsigned generation_ = 0;            ///< generation of the map that the lines belong to
+  unsigned revision_ = 0;              ///< see revision()
+  double time_ = 0.0;                  ///< time of the last measurement [s]
+  bool is_lap_ = false;                ///< line() is the current lap, not the stretch
+  bool is_lap_begun_ = false;          ///< the other lap is being planned
 };
 
 }  // namespace chicane::road

@@ -13,39 +13,38 @@
 namespace chicane::road {
 namespace {
 
-constexpr double kCurvatureNoise = 0.003;  // accepted standard deviation of curvature [1/m]
-constexpr double kMinSmoothingLength =
-    0.05;                            // keeps the system regular where there are more knots than points [m]
-constexpr int kParameterPasses = 3;  // chord length, then twice the arc length of the line found
-constexpr int kOverlapPoints = 16;  // a closed line is unrolled by at least this many points at both ends ...
-constexpr double kOverlapLengths =
-    30.0;  // ... and limit in smoothing lengths: points beyond have no influence
-constexpr std::size_t kMaxKnots = 200'000;  // limit of a line's knots
-constexpr double kMinLength = 1.0;          // least length of a line [m]
-constexpr double kLeastShare = 0.01;        // least length of the line over the length of its chords
-constexpr double kMostShare = 2.0;
-constexpr double kMostUnrolled = 4e6;       // points
-constexpr double kMaxShareOfLength = 0.02;  // limit of ℓ over the length of a short line
-constexpr double kMostUneven = 4.0;         // limit for even points: a gap over the median of its neighbours
-constexpr std::ptrdiff_t kNearGaps = 3;     // around a gap, on each side
-constexpr double kMostNoise = 1.0;          // standard deviation that cross-validation begins with [m]
-constexpr double kLeastShareOfGap = 0.1;    // least ℓ over the median gap: a shorter one interpolates
-constexpr std::size_t kMostLeftOut = 200;   // points that cross-validation leaves out, one at a time
+constexpr double kCurvatureNoise = 0.003;     // [1/m] accepted standard deviation of curvature; chosen
+constexpr double kMinSmoothingLength = 0.05;  // [m] keeps the system regular with more knots than points
+constexpr int kParameterPasses = 3;  // first by the points' chords, then twice by the line's arc length
+// A closed line is unrolled at both ends by at least kOverlapPoints points and kOverlapLengths smoothing
+// lengths: points farther away have no influence.
+constexpr int kOverlapPoints = 16;
+constexpr double kOverlapLengths = 30.0;
+constexpr std::size_t kMaxKnots = 200'000;  // limit of a line's knots; chosen: bounds memory
+constexpr double kMinLength = 1.0;          // [m] least length of a line
+constexpr double kLeastShare = 0.01;   // bounds of a plausible length of the line, as shares of the length
+constexpr double kMostShare = 2.0;     // of its points' chords
+constexpr double kMostUnrolled = 4e6;  // limit of unrolled points; chosen: bounds memory
+constexpr double kMaxShareOfLength = 0.02;  // limit of ℓ as a share of the length of a short line
+constexpr double kMostUneven = 4.0;         // limit for even points: ratio of a gap to the median around it
+constexpr std::ptrdiff_t kNearGaps = 3;     // gaps on each side of one that the median is taken of
+constexpr double kMostNoise = 1.0;          // [m] standard deviation that cross-validation begins with
+constexpr double kLeastShareOfGap = 0.1;  // least ℓ over the median gap: a line of a shorter ℓ interpolates
+constexpr std::size_t kMostLeftOut = 200;  // points that cross-validation leaves out; chosen: bounds the time
 
-/// Distances between neighbours [m].
+/// Distances between neighbouring points.
 struct Gaps {
-  double median = 0.0, mean = 0.0;
-  double unevenness = 0.0;  // largest ratio of a gap to the median of those around it
+  double median = 0.0, mean = 0.0;  // [m]
+  double unevenness = 0.0;          // largest ratio of a gap to the median of those around it
 };
 
-/// The penalty of equation (1): its order m, the differences of the coefficients, the constant of equation
-/// (2).
+/// Penalty of equation (1), of order 3 for even points and 2 for uneven ones.
 struct Penalty {
-  int order = 3;
-  std::array<double, 4> differences{-1.0, 3.0, -3.0, 1.0};
-  double noise_factor = 0.0556;
-  double step = 0.5;       // ratio of one ℓ to the next larger one
-  double usual_gap = 0.0;  // [m]
+  int order = 3;                                            // m
+  std::array<double, 4> differences{-1.0, 3.0, -3.0, 1.0};  // of the spline's coefficients
+  double noise_factor = 0.0556;                             // c of equation (2)
+  double step = 0.5;       // ratio of one candidate ℓ to the next larger one
+  double usual_gap = 0.0;  // median distance between points [m]
 
   explicit Penalty(const Gaps& gaps) noexcept : usual_gap{gaps.median} {
     if (gaps.unevenness <= kMostUneven) return;
@@ -54,30 +53,32 @@ struct Penalty {
     noise_factor = 0.0884;
     step = std::sqrt(0.5);
   }
-  /// ℓ^2m / h^(2m − 1)
+  /// Factor ℓ^2m / h^(2m − 1) of the squared differences.
   [[nodiscard]] double weight(double smoothing, double spacing) const noexcept {
     const double ratio = smoothing / spacing;
     double weight = 1.0;
     for (int i = 0; i < 2 * order - 1; ++i) weight *= ratio;
     return weight * smoothing;
   }
-  /// Uneven points are far apart where the road is straight: there the line resists bending.
+  /// Factor of the penalty in a gap [m]. Uneven points are far apart where the road is straight: the line is
+  /// stiffer there.
   [[nodiscard]] double stiffness(double gap) const noexcept {
     const double ratio = order == 3 ? 1.0 : std::max(gap / usual_gap, 1.0);
     return ratio * ratio;
   }
-  /// Whether noise of σ explains the deviations. A point of an uneven line has no neighbours to average with.
+  /// Whether noise of standard deviation σ [m] explains the deviations; 2 and 10 mm more are always accepted.
+  /// Uneven points have no near neighbours to average with, hence 2 σ for them.
   [[nodiscard]] bool explains(double sigma, const SmoothLine& line) const noexcept {
     const double most = (order == 3 ? 4.0 : 2.0) * sigma;
     return line.rms_deviation <= sigma + 0.002 && line.max_deviation <= most + 0.01;
   }
 };
 
-/// Uniform cubic B-spline with values and derivatives, unit knot distance: coefficient i has its peak at i
-/// − 1.
+/// Uniform cubic B-spline with unit distance of knots: weights of the four coefficients that shape the spline
+/// at one parameter u. Coefficient i has its peak at u = i − 1.
 struct Basis {
-  std::size_t first = 0;
-  double t = 0.0;
+  std::size_t first = 0;  // index of the first of the four coefficients
+  double t = 0.0;         // u from the knot before, in [0, 1)
   explicit Basis(double u) noexcept {
     const double whole = std::max(std::floor(u), 0.0);
     first = static_cast<std::size_t>(whole);
@@ -102,7 +103,7 @@ Vec2 combine(const std::array<double, 4>& weights, const Vec2* coefficients) noe
 /// Symmetric positive definite band matrix: row i holds entries (i, i … i + 3).
 using Band = std::vector<std::array<double, 4>>;
 
-/// L D Lᵀ in place.
+/// Factorises into L D Lᵀ in place.
 void factorise(Band& a) noexcept {
   const std::size_t n = a.size();
   for (std::size_t i = 0; i < n; ++i) {
@@ -125,12 +126,13 @@ void substitute(const Band& a, std::vector<Vec2>& x) noexcept {
   }
 }
 
-/// The points with the overlap of a closed line unrolled, and the grid of knots they lie on.
+/// Points by their arc length, those of a closed line with its overlap, and the grid of knots that they lie
+/// on.
 struct Unrolled {
-  std::vector<double> s;
-  std::vector<std::size_t> point;
-  std::size_t lead = 0;   // knots before s = 0
-  std::size_t count = 0;  // coefficients
+  std::vector<double> s;           // arc length of each point [m]
+  std::vector<std::size_t> point;  // index of each point
+  std::size_t lead = 0;            // knots before s = 0
+  std::size_t count = 0;           // coefficients
 };
 
 Unrolled unroll(const std::vector<double>& parameter, double length, bool closed, double spacing,
@@ -162,21 +164,23 @@ Unrolled unroll(const std::vector<double>& parameter, double length, bool closed
   return rolled;
 }
 
+/// Fitted spline.
 struct Fit {
   std::vector<Vec2> coefficients;
-  Band band;                    // factorised matrix of the coefficients
-  std::vector<double> weights;  // weights of the points
-  std::size_t lead = 0;
-  double spacing = 0.0;
-  double length = 0.0;
-  std::vector<double> parameter;
+  Band band;                      // factorised matrix of the coefficients
+  std::vector<double> weights;    // weights of the points
+  std::size_t lead = 0;           // knots before s = 0
+  double spacing = 0.0;           // of the knots [m]
+  double length = 0.0;            // [m]
+  std::vector<double> parameter;  // arc length of each point [m]
 
   [[nodiscard]] Basis basis(double s) const noexcept {
     return Basis{s / spacing + static_cast<double>(lead)};
   }
 };
 
-/// Equation (1): B' W B + ℓ^2m/h^(2m−1) D' D, with D the m-th differences of the coefficients.
+/// Solves equation (1): its matrix is B' W B + ℓ^2m/h^(2m−1) D' D, with D the m-th differences of the
+/// coefficients.
 void solve(Fit& fit, std::span<const Vec2> points, bool closed, const Penalty& penalty, double smoothing) {
   const Unrolled rolled = unroll(fit.parameter, fit.length, closed, fit.spacing, smoothing);
   fit.lead = rolled.lead;
@@ -213,14 +217,13 @@ void solve(Fit& fit, std::span<const Vec2> points, bool closed, const Penalty& p
 }
 
 /// Replaces the parameter of the points by their arc length along the fitted line.
-void measure(Fit& fit) {
+void measure_arc_length(Fit& fit) {
   const std::size_t intervals = fit.coefficients.size() - 3;
   std::vector<double> arc(intervals + 1, 0.0);
   const auto speed = [&](std::size_t i, double t) {
     return combine(Basis{t}.slope(), &fit.coefficients[i]).norm();
   };
-  for (std::size_t i = 0; i < intervals;
-       ++i) {  // Simpson's rule; t = 1 lies in the next interval of the same spline
+  for (std::size_t i = 0; i < intervals; ++i) {  // Simpson's rule
     const double end = (0.5 * (fit.coefficients[i + 3] - fit.coefficients[i + 1])).norm();
     arc[i + 1] = arc[i] + (speed(i, 0.0) + 4.0 * speed(i, 0.5) + end) / 6.0;
   }
@@ -236,6 +239,7 @@ void measure(Fit& fit) {
   fit.length = length;
 }
 
+/// Points with the length of their chords as parameter; no spline yet.
 Fit initial_fit(std::span<const Vec2> points, bool closed) {
   Fit fit;
   fit.parameter.resize(points.size());
@@ -255,6 +259,7 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
+/// Distances between neighbouring points of a line of `length` [m].
 Gaps gaps_of(std::span<const Vec2> points, bool closed, double length) {
   std::vector<double> gaps;
   gaps.reserve(points.size());
@@ -278,9 +283,10 @@ double deviation_at(const Fit& fit, std::span<const Vec2> points, std::size_t i)
   const Vec2* c = &fit.coefficients[std::min(basis.first, fit.coefficients.size() - 4)];
   const Vec2 gap = points[i] - combine(basis.value(), c);
   const Vec2 tangent = combine(basis.slope(), c);
-  return std::fabs(tangent.x() * gap.y() - tangent.y() * gap.x()) / std::max(tangent.norm(), 1e-12);
+  return std::fabs(tangent.cross(gap)) / std::max(tangent.norm(), 1e-12);
 }
 
+/// Knots of a fitted spline, and the points' distances from it.
 SmoothLine finish(Fit&& fit, std::span<const Vec2> points, bool closed) {
   SmoothLine line;
   double sum = 0.0;
@@ -302,22 +308,22 @@ SmoothLine finish(Fit&& fit, std::span<const Vec2> points, bool closed) {
   return line;
 }
 
-/// Whether a fit has a plausible length: with many knots to each point rounding can give any, and memory
-/// grows with it.
+/// Whether a fit has a plausible length. With many knots to each point rounding can give any length, by which
+/// memory grows.
 bool is_solvable(const Fit& fit, const Fit& raw, std::size_t points, double smoothing) noexcept {
   const bool has_a_length = fit.length >= kLeastShare * raw.length && fit.length <= kMostShare * raw.length;
   return has_a_length &&
          kOverlapLengths * smoothing / fit.length * static_cast<double>(points) <= kMostUnrolled;
 }
 
-/// Equation (2): the ℓ for which white noise σ every Δ metres leaves the accepted noise of the curvature.
+/// ℓ of equation (2) [m]: white noise of σ every `gap` [m] leaves the accepted noise of the curvature.
 double demanded_length(const Penalty& penalty, double sigma, double gap, double length) {
   const double share = penalty.noise_factor * sigma * sigma * gap / (kCurvatureNoise * kCurvatureNoise);
   const double demanded = sigma > 0.0 ? exp(0.2 * log(share)) : 0.0;
   return std::max(std::min(demanded, kMaxShareOfLength * length), kMinSmoothingLength);
 }
 
-/// The line for one ℓ, its points by distance along it.
+/// Fit for one ℓ, with its points by their arc length on it.
 Result<Fit> fitted(const Fit& raw, std::span<const Vec2> points, bool closed, double spacing,
                    const Penalty& penalty, double smoothing) {
   const double longest = spacing * static_cast<double>(kMaxKnots);
@@ -328,7 +334,7 @@ Result<Fit> fitted(const Fit& raw, std::span<const Vec2> points, bool closed, do
   }
   Fit fit = raw;
   for (int pass = 0; pass < kParameterPasses; ++pass) {
-    if (pass > 0) measure(fit);
+    if (pass > 0) measure_arc_length(fit);
     if (!is_solvable(fit, raw, points.size(), smoothing)) {
       return fail(ErrorCode::kInvalidArgument,
                   "points: got points that no smooth line follows, expected more of them, or a wider "
@@ -348,6 +354,7 @@ struct Validation {
   double variance = 0.0;   // variance of the noise across the line [m²]
 };
 
+/// Cross-validates a fit by at most kMostLeftOut of its points.
 Validation validate(const Fit& fit, std::span<const Vec2> points) {
   const std::size_t stride = (points.size() + kMostLeftOut - 1) / kMostLeftOut;
   double count = 0.0, sum = 0.0, squares = 0.0, residual = 0.0, freedom = 0.0;
@@ -379,18 +386,19 @@ double estimate_noise(std::span<const Vec2> points, bool closed, double spacing)
   const Fit raw = initial_fit(points, closed);
   const Gaps gaps = gaps_of(points, closed, raw.length);
   const Penalty penalty{gaps};
-  std::vector<Validation> rungs;
+  std::vector<Validation> candidates;  // of falling ℓ
   double smoothing = demanded_length(penalty, kMostNoise, gaps.mean, raw.length);
   const double least = std::max(kLeastShareOfGap * gaps.median, kMinSmoothingLength);
   for (; smoothing >= least; smoothing *= std::sqrt(0.5)) {
     const Result<Fit> fit = fitted(raw, points, closed, spacing, penalty, smoothing);
-    if (fit) rungs.push_back(validate(*fit, points));
+    if (fit) candidates.push_back(validate(*fit, points));
   }
-  if (rungs.empty()) return kMostNoise;
-  const Validation& best = *std::min_element(
-      rungs.begin(), rungs.end(), [](const Validation& a, const Validation& b) { return a.error < b.error; });
-  const auto smoothest = std::find_if(rungs.begin(), rungs.end(), [&](const Validation& rung) {
-    return rung.error <= best.error + best.tolerance;
+  if (candidates.empty()) return kMostNoise;
+  const Validation& best =
+      *std::min_element(candidates.begin(), candidates.end(),
+                        [](const Validation& a, const Validation& b) { return a.error < b.error; });
+  const auto smoothest = std::find_if(candidates.begin(), candidates.end(), [&](const Validation& each) {
+    return each.error <= best.error + best.tolerance;
   });
   return std::min(std::sqrt(smoothest->variance), kMostNoise);
 }

@@ -14,22 +14,18 @@ namespace chicane::road {
 
 namespace {
 
-/// Two pieces of a polyline that touch: from points[first] and points[second] to their next points, first <
-/// second.
+/// Two pieces of a polyline that touch: those that begin at points[first] and points[second], first < second.
 struct Crossing {
   std::size_t first = 0;
   std::size_t second = 0;
-  bool is_tangle = false;  ///< skipped: too many pieces in one place
+  bool is_tangle = false;  ///< stands for crossings that were not searched: too many pieces in one cell
 };
 
+// Limits that bound the time of the search; chosen: far more than any road has.
 constexpr std::size_t kMostCrossings = 10'000;
-
 constexpr std::size_t kMaxPiecesPerCell = 300;
 
-double side(const Vec2& a, const Vec2& b, const Vec2& p) noexcept {
-  return (b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x());
-}
-
+/// Whether the pieces from a0 to a1 and from b0 to b1 have a point in common.
 bool touches(const Vec2& a0, const Vec2& a1, const Vec2& b0, const Vec2& b1) noexcept {
   const Vec2 a_low = min(a0, a1);
   const Vec2 a_high = max(a0, a1);
@@ -37,18 +33,21 @@ bool touches(const Vec2& a0, const Vec2& a1, const Vec2& b0, const Vec2& b1) noe
   const Vec2 b_high = max(b0, b1);
   if (b_high.x() < a_low.x() || b_high.y() < a_low.y()) return false;
   if (b_low.x() > a_high.x() || b_low.y() > a_high.y()) return false;
+  // Positive for a point p to the left of the line from a to b.
+  const auto side = [](const Vec2& a, const Vec2& b, const Vec2& p) { return (b - a).cross(p - a); };
   return side(a0, a1, b0) * side(a0, a1, b1) <= 0.0 && side(b0, b1, a0) * side(b0, b1, a1) <= 0.0;
 }
 
+/// Piece of a polyline in a cell of the grid.
 struct Entry {
-  std::uint64_t cell = 0;
+  std::uint64_t cell = 0;  ///< column in the upper 32 bits, row in the lower
   std::size_t piece = 0;
 };
 
-/// The places where the polyline through `points` crosses or touches itself (neighbours sharing a point do
-/// not count), by rising `second`. Grid of cells as wide as the longest piece: O(n log n) for evenly spaced
-/// points. A line that comes by the same cell hundreds of times is no road and is reported as crossing there,
-/// once for each such cell. Ends after kMostCrossings.
+/// Crossings of the polyline through `points` with itself, by rising `second`; neighbours that share a point
+/// do not count. Searches by a grid of cells as wide as the longest piece: O(n log n) for evenly spaced
+/// points. A cell with hundreds of pieces, which no road has, gives one crossing that is a tangle. Ends after
+/// kMostCrossings.
 std::vector<Crossing> find_crossings(std::span<const Vec2> points, bool closed) {
   const std::size_t n = points.size();
   const std::size_t pieces = closed ? n : n - 1;
@@ -100,14 +99,16 @@ std::vector<Crossing> find_crossings(std::span<const Vec2> points, bool closed) 
     return a.first == b.first && a.second == b.second;
   };
   std::sort(found.begin(), found.end(), by_place);
-  found.erase(std::unique(found.begin(), found.end(), is_same), found.end());  // seen from several cells
+  found.erase(std::unique(found.begin(), found.end(), is_same), found.end());  // found in several cells
   return found;
 }
 
-constexpr double kMaxWidth = 1000.0;        // [m]
-constexpr double kMaxGap = 10'000.0;        // largest gap from point to point [m]
-constexpr double kLeastCrossingSine = 0.5;  // least sine of the angle between roads that cross
+// Chosen: beyond every road, so that points of other things and points in a wrong order are refused.
+constexpr double kMaxWidth = 1000.0;        // [m] from the line to an edge
+constexpr double kMaxGap = 10'000.0;        // [m] from point to point
+constexpr double kLeastCrossingSine = 0.5;  // least sine of the angle between roads that cross: 30 degrees
 constexpr double kLeastLoop = 4.0;          // least loop from crossing to crossing, in widths of the road
+constexpr double kFootWindow = 5.0;         // [m] search along the line for the foot of a raw point
 
 Error invalid(const std::string& where, const std::string& got, const std::string& expected) {
   return {ErrorCode::kInvalidArgument, where + ": got " + got + ", expected " + expected};
@@ -155,22 +156,21 @@ std::optional<Error> check_points(const std::vector<TrackPoint>& points) {
   return std::nullopt;
 }
 
-/// Whether two stretches of road meet as a crossing: at an angle, and with a loop between them that a road of
-/// this width can make. Points in a wrong order and roads that run into one another do neither.
+/// Whether two pieces of the line meet as a crossing of roads: at an angle, and with a loop between them that
+/// a road of this width can make. Points in a wrong order meet in other ways.
 bool is_crossing_of_roads(const SmoothLine& line, const Crossing& crossing, bool closed, double road_width) {
   const std::size_t n = line.knots.size();
   const auto along = [&](std::size_t i) -> Vec2 { return line.knots[(i + 1) % n] - line.knots[i]; };
   const Vec2 first = along(crossing.first);
   const Vec2 second = along(crossing.second);
-  const double sine =
-      (first.x() * second.y() - first.y() * second.x()) / std::max(first.norm() * second.norm(), 1e-12);
+  const double sine = first.cross(second) / std::max(first.norm() * second.norm(), 1e-12);
   const double loop = line.spacing * static_cast<double>(crossing.second - crossing.first);
   const double shorter = closed ? std::min(loop, line.length - loop) : loop;
   return std::fabs(sine) >= kLeastCrossingSine && shorter >= kLeastLoop * road_width;
 }
 
-/// Counts crossings of the smooth line with itself. Fails at a place where it must not cross, in terms of the
-/// raw points.
+/// Counts crossings of the smooth line with itself. Fails at the first one that is no crossing of roads, and
+/// names the raw points there.
 Result<int> count_crossings(const SmoothLine& line, const std::vector<TrackPoint>& points, bool closed) {
   const auto raw_index = [&](std::size_t knot) {
     const double s = line.spacing * static_cast<double>(knot);
@@ -251,7 +251,7 @@ Result<Track> Track::create(std::string name, const std::vector<TrackPoint>& poi
 
 std::optional<Error> Track::check_fit(const std::vector<TrackPoint>& points) const {
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const double off = centre_.project(points[i].position, raw_places_[i], 5.0).d;
+    const double off = centre_.project(points[i].position, raw_places_[i], kFootWindow).d;
     const double room = off > 0.0 ? points[i].right : points[i].left;
     if (std::fabs(off) < room) continue;
     return invalid(point_name(i), chicane::number_text(std::fabs(off), 3) + " m beside the smooth line",
@@ -276,7 +276,7 @@ Track Track::scaled(double factor) const {
 }
 
 void Track::set_widths(const std::vector<TrackPoint>& points, const std::vector<double>& guesses) {
-  // A raw point at d left of the line has its left edge at d + left, its right edge at right − d.
+  // Widths at the foot of a raw point that is d left of the line: d + left, and right − d.
   struct Sample {
     double s = 0.0;
     double left = 0.0;
@@ -285,7 +285,7 @@ void Track::set_widths(const std::vector<TrackPoint>& points, const std::vector<
   std::vector<Sample> samples;
   samples.reserve(points.size() + 2);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Projection foot = centre_.project(points[i].position, guesses[i], 5.0);
+    const Projection foot = centre_.project(points[i].position, guesses[i], kFootWindow);
     samples.push_back({foot.s, foot.d + points[i].left, points[i].right - foot.d});
     raw_places_.push_back(foot.s);
   }
@@ -325,14 +325,15 @@ double Track::edge_distance(const Projection& foot) const noexcept {
 
 namespace {
 
+// Chosen: the corners of known circuits come out as their names have them. corners.ts has the same numbers.
 constexpr double kSpacing = 2.0;                 // spacing of samples [m]
 constexpr int kHalfWindow = 3;                   // samples on each side that the curvature is averaged with
 constexpr double kLeastCurvature = 1.0 / 220.0;  // a larger radius is straight at racing speed [1/m]
-constexpr double kSameCorner = 20.0;             // straight between bends of one corner, at most [m]
-constexpr double kLeastTurn = 0.3;               // [rad]
-constexpr double kNarrowest = 6.0;               // road in full size [m]
+constexpr double kSameCorner = 20.0;             // longest straight between bends of one corner [m]
+constexpr double kLeastTurn = 0.3;               // least turn of a corner [rad]
+constexpr double kNarrowest = 6.0;               // mean width of the narrowest road in full size [m]
 
-/// Size of a road over full size.
+/// Size of a road as a share of full size, by its mean width.
 double size_of(const Track& track) {
   constexpr int kPlaces = 64;  // samples along the track
   double width = 0.0;
@@ -346,14 +347,16 @@ double size_of(const Track& track) {
 /// Mean curvature of a line at equal distances [1/m].
 struct Bends {
   double spacing = 0.0;  ///< [m]
-  int count = 0;
+  int count = 0;         ///< of the samples
   bool is_closed = false;
-  std::vector<double> curvature{};
+  std::vector<double> curvature{};  ///< at the samples
 
+  /// Curvature of sample `i`: of any lap of a closed line; zero beyond the ends of an open one.
   [[nodiscard]] double at(int i) const {
     if (is_closed) return curvature[static_cast<std::size_t>(((i % count) + count) % count)];
     return i < 0 || i >= count ? 0.0 : curvature[static_cast<std::size_t>(i)];
   }
+  /// Arc length of sample `i` within a lap [m].
   [[nodiscard]] double place(int i) const { return is_closed ? (i % count) * spacing : i * spacing; }
 };
 
@@ -380,14 +383,14 @@ std::vector<Corner> corners_of(const Track& track) {
     const double curvature = size * bends.at(i);
     return std::fabs(curvature) < kLeastCurvature ? 0 : curvature > 0.0 ? 1 : -1;
   };
-  // Begins where the road is straight or changes its side, so that no corner is cut in two.
+  // Begins at a sample that is straight or turns to another side than the one before: within no corner.
   int first = 0;
   while (bends.is_closed && first < bends.count && side(first) != 0 && side(first - 1) == side(first))
     ++first;
   if (first == bends.count) return {};
 
   struct Bend {
-    int from, to, side;
+    int from, to, side;  // first sample, the one after the last, and 1: left, −1: right
   };
   std::vector<Bend> found;
   for (int i = first; i < first + bends.count; ++i) {
@@ -429,7 +432,8 @@ std::vector<Corner> corners_of(const Track& track) {
 
 std::vector<double> corner_sectors(const Track& track, const std::vector<Corner>& corners) {
   const double round = track.centre().is_closed() ? track.length() : 0.0;
-  const auto ahead = [&](double s, double of) { return s < of ? s - of + round : s - of; };
+  // Distance forwards from `from` to `s`, round a closed road.
+  const auto ahead = [&](double s, double from) { return s < from ? s - from + round : s - from; };
   std::vector<double> ends;
   for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
     const Corner& here = corners[i];

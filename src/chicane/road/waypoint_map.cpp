@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Map of waypoints: matches new ones to known ones, closes the loop, and keeps the curve through them as
-// settled knots.
+// Map of waypoints: matches new ones to known ones, closes the loop, and extends the curve through them.
 #include "chicane/road/waypoint_map.hpp"
 
 #include <algorithm>
@@ -11,16 +10,12 @@
 namespace chicane::road {
 namespace {
 
-constexpr std::size_t kFewestForLoop = 8;  // waypoints of the shortest loop
-constexpr double kStraightOn = 0.9;        // cosine between the way to a waypoint and the way on from it
+constexpr std::size_t kFewestForLoop = 8;  // waypoints of the shortest loop; chosen
+constexpr double kStraightOn = 0.9;        // least cosine between the ways to and from the waypoint of a loop
 
 bool is_same(const Vec2& a, const Vec2& b) {
-  const double dx = a.x() - b.x();
-  const double dy = a.y() - b.y();
-  return dx * dx + dy * dy < WaypointMap::kSame * WaypointMap::kSame;
+  return (a - b).squared_norm() < WaypointMap::kSame * WaypointMap::kSame;
 }
-
-bool is_finite(const Vec2& p) { return std::isfinite(p.x()) && std::isfinite(p.y()); }
 
 }  // namespace
 
@@ -35,17 +30,15 @@ void WaypointMap::clear() noexcept {
 
 int WaypointMap::find(const Vec2& point) const noexcept {
   const int n = static_cast<int>(points_.size());
-  for (int i = hint_; i < n; ++i) {
-    if (is_same(points_[static_cast<std::size_t>(i)], point)) return i;
-  }
-  for (int i = 0; i < std::min(hint_, n); ++i) {
+  for (int k = 0; k < n; ++k) {
+    const int i = (hint_ + k) % n;
     if (is_same(points_[static_cast<std::size_t>(i)], point)) return i;
   }
   return -1;
 }
 
-/// Whether waypoint `i` of a measurement is the map's first one again. On a road that crosses itself another
-/// passage may have a waypoint in the same place: the next waypoint decides, if it is visible.
+// On a road that crosses itself another passage may have a waypoint at the same point: the next waypoint
+// decides, if the measurement has it, else the direction, which leaves some cases undecided.
 WaypointMap::Loop WaypointMap::closes(std::span<const Vec2> seen, std::size_t i) const noexcept {
   if (points_.size() < kFewestForLoop || !is_same(points_.front(), seen[i])) return Loop::kOpen;
   if (i + 1 < seen.size()) return is_same(points_[1], seen[i + 1]) ? Loop::kClosed : Loop::kOpen;
@@ -59,10 +52,10 @@ bool WaypointMap::add(const model::Measurement& now) noexcept {
   const int count = std::clamp(now.waypoint_count, 0, model::Measurement::kMaxWaypoints);
   int known = -1;  // index in the map of waypoint `first` of the measurement
   int first = 0;
-  int before = 0;  // waypoints in front of it that the map does not have
+  int before = 0;  // unknown waypoints before the first known one
   for (; first < count && known < 0; ++first) {
     const Vec2& p = now.waypoints[static_cast<std::size_t>(first)];
-    if (!is_finite(p)) continue;
+    if (!p.is_finite()) continue;
     known = find(p);
     before += known < 0 ? 1 : 0;
   }
@@ -81,10 +74,10 @@ bool WaypointMap::add(const model::Measurement& now) noexcept {
   }
   for (int i = first; i < count && !is_closed_; ++i) {
     const Vec2& p = now.waypoints[static_cast<std::size_t>(i)];
-    if (!is_finite(p)) continue;
+    if (!p.is_finite()) continue;
     const int size = static_cast<int>(points_.size());
     if (known >= 0 && known + 1 < size) {
-      ++known;  // already stored in this place
+      ++known;  // stored already
       continue;
     }
     if (size > 0 && is_same(points_.back(), p)) continue;
@@ -103,7 +96,7 @@ bool WaypointMap::add(const model::Measurement& now) noexcept {
   return changed;
 }
 
-WaypointLine::WaypointLine() : raw_{road::Path::with_capacity(kWindow)} {
+WaypointLine::WaypointLine() : raw_{Path::with_capacity(kWindow)} {
   knots_.resize(static_cast<std::size_t>(kCapacity));
   along_.resize(static_cast<std::size_t>(kMostWaypoints));
 }
@@ -125,7 +118,7 @@ bool WaypointLine::extend(const WaypointMap& map, int newest) noexcept {
     window[static_cast<std::size_t>(i)] = points[static_cast<std::size_t>(first + i) % points.size()];
   if (!raw_.rebuild({window.data(), static_cast<std::size_t>(count)}, false)) return false;
 
-  // Shift from this spline's arc length to the whole line's: they agree where the settled part ends.
+  // Difference of arc length between the whole curve and this spline, taken at the end of the settled part.
   const double shift = along(settled_) - raw_.arc_length(settled_ - first);
   const double end = shift + raw_.length();
   const int last_knot = static_cast<int>(std::min(std::ceil((end + kTail) / kSpacing), 1e6));
@@ -141,7 +134,7 @@ bool WaypointLine::extend(const WaypointMap& map, int newest) noexcept {
 }
 
 void WaypointLine::sample(double s, double raw_shift) noexcept {
-  const road::PathPoint at = raw_.at(s - raw_shift);
+  const PathPoint at = raw_.at(s - raw_shift);
   double heading = at.heading;
   if (knot_count_ > 0) {
     const double before = knots_[static_cast<std::size_t>(knot_count_ - 1)].heading;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Topics between a controller and its car: conversion of commands to drive messages, and reports on partners
-// that are missing or do not fit.
+// Topics between a controller and its car: commands as drive messages, odometry as measurements, poses in a
+// tree of frames, and reports on partners that are missing or do not fit.
 #include "chicane/ros/car_topics.hpp"
 
 #include <fmt/format.h>
@@ -133,8 +133,8 @@ Result<CarTopics> CarTopics::create(Participant& at, const NodeOptions& node) {
   const Qos any{.is_reliable = false};
   endpoints.read(topics.odom, node.topics.odom, protocol::OdometryMessage::kType, node.odom_qos);
   endpoints.read(topics.path, node.topics.path, protocol::PathMessage::kType, any);
-  // One that was sent before, too: a volatile reader gets none of those, and a transient local one no
-  // others.
+  // Two readers of the path: only a transient local one gets a path that was sent before, and only a volatile
+  // one gets paths of a volatile sender.
   endpoints.read(topics.kept_path, node.topics.path, protocol::PathMessage::kType,
                  {.is_transient_local = true, .depth = 1});
   endpoints.read(topics.transforms, "/tf", protocol::TransformsMessage::kType,
@@ -160,10 +160,14 @@ std::vector<int> CarTopics::matched() const {
 
 namespace {
 
-constexpr double kHalfWidth = 4.0;      // half width of a road given as a path, for a car in full size [m]
-constexpr double kClosedInSteps = 3.0;  // a lap's last point is so near to its first, in mean steps
-constexpr std::size_t kSmallestLap = 8;
+// Chosen.
+constexpr double kHalfWidth = 4.0;  // [m] half width of a road given as a path, in full size
+// Largest distance from the last to the first point of a lap, in mean steps.
+constexpr double kClosedInSteps = 3.0;
+constexpr std::size_t kSmallestLap = 8;  // least points of a lap
+constexpr double kSamePoint = 1e-3;      // [m] distance below which two points of a path are one
 
+/// Whether the points of a path are a circuit.
 bool is_lap(const std::vector<Vec2>& points) {
   if (points.size() < kSmallestLap) return false;
   double length = 0.0;
@@ -186,7 +190,7 @@ Result<void> CarSight::use_path(const std::vector<Vec2>& points) {
   const double width = kHalfWidth * scenario_.vehicle.scale;
   std::vector<road::TrackPoint> road;
   for (const Vec2& point : points) {
-    if (road.empty() || (point - road.back().position).norm() > 1e-3)
+    if (road.empty() || (point - road.back().position).norm() > kSamePoint)
       road.push_back({.position = point, .left = width, .right = width});
   }
   auto track = road::Track::create("path", road, is_lap(points),
@@ -229,7 +233,6 @@ void CarSight::sent(double time, const model::Command& command) noexcept {
   sent_[count_++ % sent_.size()] = {time, command};
 }
 
-/// The newest command that was sent a latency ago, or the oldest that is remembered.
 model::Command CarSight::acting(double time) const noexcept {
   const std::size_t known = std::min(count_, sent_.size());
   for (std::size_t back = 1; back <= known; ++back) {
@@ -241,12 +244,13 @@ model::Command CarSight::acting(double time) const noexcept {
 
 namespace {
 
+/// Pose of the parent in a frame that has `pose` in the parent.
 model::Pose inverse(const model::Pose& pose) noexcept {
   const double c = chicane::cos(pose.psi), s = chicane::sin(pose.psi);
   return {.x = -c * pose.x - s * pose.y, .y = s * pose.x - c * pose.y, .psi = -pose.psi};
 }
 
-/// Names with and without a slash in front are the same frame: tf had it, tf2 has not.
+/// Name of a frame without a slash in front: tf had one, tf2 has none.
 std::string plain(const std::string& name) { return name.starts_with('/') ? name.substr(1) : name; }
 
 }  // namespace
@@ -266,7 +270,6 @@ void FrameTree::put(const protocol::TransformMessage& transform) {
   links_[child] = {plain(transform.frame), pose};
 }
 
-/// The poses of `frame` in itself and each of its parents.
 std::map<std::string, model::Pose> FrameTree::seen_from_parents(const std::string& frame) const {
   std::map<std::string, model::Pose> seen{{frame, {}}};
   std::string at = frame;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Names and types of ROS 2 in DDS, and a Cyclone type whose samples are bytes.
+// Names and types of ROS 2 in DDS, and a type of Cyclone DDS whose samples are bytes.
 #include "chicane/ros/cdr_type.hpp"
 
 #include <dds/dds.h>
@@ -9,7 +9,8 @@
 #include <dds/ddsi/q_radmin.h>
 #include <fmt/format.h>
 
-// ddsi_domaingv.h includes q_sockwaitset.h, which is C alone: a structure and a pointer to it have one name.
+// ddsi_domaingv.h includes q_sockwaitset.h, which is no C++: a structure and a pointer to it have one name
+// there.
 #define Q_SOCKWAITSET_H
 using os_sockWaitset = struct SocketWaitset*;
 #include <dds/ddsi/ddsi_domaingv.h>
@@ -48,24 +49,26 @@ std::string ros_type(std::string_view type) {
 
 namespace {
 
-// A parameter beside a message (RTPS 2.3, 9.4.2.11): the request that a reply answers, 16 bytes of a GUID and
-// 8 of a number. Fast DDS reads it by the first of these marks, from version 3 on by the second, too.
+// Numbers of the RTPS protocol, version 2.3.
+// Heads of the parameter that names the request of a reply (9.4.2.11): 16 bytes of a GUID and 8 of a number.
+// Fast DDS reads the first one, since version 3 also the second.
 constexpr std::array<std::string_view, 2> kCallMarks{{{"\x0f\x80\x18\0", 4}, {"\x83\0\x18\0", 4}}};
-constexpr std::string_view kLastParameter{"\x01\0\0\0", 4};
-constexpr std::size_t kGuid = 16, kNumber = 8;                   // [byte]
-constexpr std::size_t kDataHeader = 24;                          // of a message in RTPS [byte]
-constexpr std::uint8_t kIsLittleEndian = 1, kHasParameters = 2;  // flags of this header
+constexpr std::string_view kLastParameter{"\x01\0\0\0", 4};      // end of the parameters
+constexpr std::size_t kGuid = 16, kNumber = 8;                   // [byte] sizes of the two parts of a call
+constexpr std::size_t kDataHeader = 24;                          // [byte] header of a message
+constexpr std::uint8_t kIsLittleEndian = 1, kHasParameters = 2;  // flags of that header
 
-/// A message: Cyclone's part, and the bytes.
+/// Message: Cyclone's part, and the bytes.
 struct Message : ddsi_serdata {
-  std::string bytes;           ///< padded to a multiple of four, as Cyclone reads that far
-  std::size_t size = 0;        ///< size without padding
-  std::size_t parameters = 0;  ///< size of the parameters in front of the message in CDR
-  std::string call{};          ///< of a request, as Sample::call
+  std::string bytes;           ///< padded to a multiple of four, because Cyclone reads that far
+  std::size_t size = 0;        ///< size without padding [byte]
+  std::size_t parameters = 0;  ///< size of the parameters before the CDR part [byte]
+  std::string call{};          ///< Sample::call of a request
 };
 
 const Message& message_of(const ddsi_serdata* data) { return static_cast<const Message&>(*data); }
 
+/// Empty message for `size` bytes.
 Message* new_message(const ddsi_sertype* type, ddsi_serdata_kind kind, std::size_t size) {
   auto* message = new Message;
   ddsi_serdata_init(message, type, kind);
@@ -80,7 +83,7 @@ std::uint16_t number_at(const unsigned char* bytes) {
   return number;
 }
 
-/// The call of a request: the GUID that the reply has to name, and the message's own number.
+/// Call of a request: the GUID that the reply has to name, and the number of the message. Empty without one.
 std::string call_in(const nn_rdata& part) {
   const unsigned char* at = NN_RMSG_PAYLOADOFF(part.rmsg, NN_RDATA_SUBMSG_OFF(&part));
   const unsigned char* end = NN_RMSG_PAYLOADOFF(part.rmsg, NN_RDATA_PAYLOAD_OFF(&part));
@@ -96,7 +99,9 @@ std::string call_in(const nn_rdata& part) {
   return {};
 }
 
-/// Take only the part beyond the bytes so far: fragments may overlap.
+// Functions that Cyclone calls for messages of this type.
+
+/// Message from its fragments, which may overlap.
 ddsi_serdata* from_network(const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* part,
                            std::size_t size) {
   Message* message = new_message(type, kind, size);
@@ -112,6 +117,7 @@ ddsi_serdata* from_network(const ddsi_sertype* type, ddsi_serdata_kind kind, con
   return message;
 }
 
+/// Message from an OutgoingMessage: parameters with the call, if there is one, then the bytes.
 ddsi_serdata* from_sample(const ddsi_sertype* type, ddsi_serdata_kind kind, const void* sample) {
   const auto& outgoing = *static_cast<const OutgoingMessage*>(sample);
   if (kind != SDK_DATA) return new_message(type, kind, 0);
@@ -128,17 +134,21 @@ ddsi_serdata* from_sample(const ddsi_sertype* type, ddsi_serdata_kind kind, cons
   return message;
 }
 
+/// Lends a part of a message's bytes to Cyclone, which keeps a reference to the message meanwhile.
 ddsi_serdata* lend_bytes(const ddsi_serdata* data, std::size_t offset, std::size_t size, ddsrt_iovec_t* to) {
   auto* message = static_cast<Message*>(ddsi_serdata_ref(data));
   to->iov_base = message->bytes.data() + offset;
   to->iov_len = size;
   return message;
 }
+
+/// Message with the key only, which is empty.
 ddsi_serdata* to_untyped(const ddsi_serdata* data) {
   Message* message = new_message(data->type, SDK_KEY, 0);
   message->type = nullptr;
   return message;
 }
+
 ddsi_serdata_ops message_functions() {
   using Type = const ddsi_sertype*;
   using Data = const ddsi_serdata*;
@@ -173,7 +183,7 @@ ddsi_sertype_ops type_functions() {
     delete type;
   };
   ops.zero_samples = [](Type, void*, std::size_t) {};
-  // Nobody takes samples: messages are taken as they are.
+  // No samples are made, because messages are taken as they are.
   ops.realloc_samples = [](void** samples, Type, void*, std::size_t, std::size_t count) {
     std::fill_n(samples, count, nullptr);
   };
@@ -183,13 +193,13 @@ ddsi_sertype_ops type_functions() {
   return ops;
 }
 
-ddsi_tran_write_fn_t send_packet = nullptr;  // Cyclone's
+ddsi_tran_write_fn_t send_packet = nullptr;  // Cyclone's function that sends a packet
 
-/// Sends a packet. A message with parameters in front says so in its header, the end of the piece before:
-/// Cyclone has no parameters of this kind.
+/// Sends a packet. Sets the flag of parameters in the header of each message that begins with them, at the
+/// end of the piece before, because Cyclone has no parameters of this kind.
 ssize_t send_with_parameters(ddsi_tran_conn_t at, const ddsi_locator_t* to, std::size_t count,
                              const ddsrt_iovec_t* pieces, uint32_t flags) {
-  constexpr unsigned char kData = 0x15;
+  constexpr unsigned char kData = 0x15;  // kind of a message in RTPS
   for (std::size_t i = 1; i < count; ++i) {
     const std::string_view mark = kCallMarks[0];
     const bool has_parameters =

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// DDS as this module needs it: participant, readers and writers of messages that are already encoded.
 #pragma once
 
 #include <chrono>
@@ -13,29 +14,29 @@
 
 namespace chicane::ros {
 
-/// Options for finding partners.
+/// Options for finding partners in the network.
 struct NetworkOptions {
   int domain = 0;                       ///< ROS_DOMAIN_ID, [0, 232]
   std::string interface = "lo";         ///< network interface by name; "auto": DDS's choice
-  std::vector<std::string> peers = {};  ///< addresses that are asked one by one, where there is no multicast
+  std::vector<std::string> peers = {};  ///< addresses of partners, for networks without multicast
 };
 
-/// Quality of service of one topic, the part that ROS 2 programs choose.
+/// Quality of service of a topic, as far as ROS 2 programs choose it.
 struct Qos {
   bool is_reliable = true;          ///< lost messages are sent again; false: best effort
   bool is_transient_local = false;  ///< late readers get the last messages; false: volatile
   int depth = 10;                   ///< messages kept, [1, 1000]
 };
 
-/// One message that arrived, its bytes as in RosTopic: CDR with its four-byte header.
+/// Message that arrived.
 struct Sample {
-  std::string bytes{};
-  std::uint64_t writer = 0;  ///< handle of the writer: another number is another writer
-  /// Of a request that rmw_fastrtps sends: what the reply has to name, 24 bytes; empty: sent without.
+  std::string bytes{};       ///< CDR with its header of four bytes
+  std::uint64_t writer = 0;  ///< handle of its writer
+  /// Identity of a request by rmw_fastrtps, which the reply has to name, 24 bytes; empty: none was sent.
   std::string call{};
 };
 
-/// A reader or writer that another program has.
+/// Reader or writer of another program.
 struct Endpoint {
   bool is_writer = false;
   std::string topic{};  ///< name in ROS 2: "/odom"
@@ -49,9 +50,9 @@ class Writer {
   virtual ~Writer() = default;
   /// Sends `bytes` (CDR with header). False when DDS refuses, as when a reliable reader does not keep up.
   bool write(std::string_view bytes) { return reply(bytes, {}); }
-  /// Sends the reply to a request, whose Sample::call is `call`.
+  /// Sends the reply to a request with the Sample::call `call`; false as in write().
   virtual bool reply(std::string_view bytes, std::string_view call) = 0;
-  /// Readers that get the messages now.
+  /// Number of readers that get the messages now.
   [[nodiscard]] virtual int matched() const = 0;
 };
 
@@ -59,48 +60,52 @@ class Writer {
 class Reader {
  public:
   virtual ~Reader() = default;
-  /// The messages that arrived since the last call, oldest first.
+  /// Messages that arrived since the last call, the oldest first.
   [[nodiscard]] virtual std::vector<Sample> take() = 0;
-  /// Writers whose messages arrive now.
+  /// Number of writers whose messages arrive now.
   [[nodiscard]] virtual int matched() const = 0;
 };
 
-/// One program in a DDS domain, by Cyclone DDS. Messages are of ROS 2 types and go as they are encoded. One
-/// thread, but for Writer. One object for a domain and process at a time.
+/// Member of a DDS domain, by Cyclone DDS, for messages of ROS 2 types that are already encoded. One thread,
+/// but any for Writer. A process may have one participant of a domain at a time.
 class Participant {
  public:
   /// Joins the domain. kIo with the remedy, for example for an unknown interface.
   [[nodiscard]] static Result<std::unique_ptr<Participant>> create(const NetworkOptions& options);
 
   virtual ~Participant() = default;
-  /// `topic` and `type` as in ROS 2: "/odom", "nav_msgs/msg/Odometry". Gone before the participant.
+  /// Creates a writer; `topic` and `type` as in ROS 2: "/odom", "nav_msgs/msg/Odometry". The participant
+  /// outlives it.
   [[nodiscard]] virtual Result<std::unique_ptr<Writer>> writer(const std::string& topic,
                                                                const std::string& type, const Qos& qos) = 0;
+  /// Creates a reader, by the same rules.
   [[nodiscard]] virtual Result<std::unique_ptr<Reader>> reader(const std::string& topic,
                                                                const std::string& type, const Qos& qos) = 0;
-  /// Comes back when a reader has messages, or after `patience`.
+  /// Waits until a reader has messages, or for `patience`.
   virtual void wait(std::chrono::nanoseconds patience) = 0;
   /// Endpoints of other programs in this domain. Allocates.
   [[nodiscard]] virtual std::vector<Endpoint> others() = 0;
-  /// Announces readers and writers as those of a ROS 2 node, to the partners that others() found last. Sends
-  /// nothing where nothing changed.
+  /// Announces readers and writers as those of a ROS 2 node to the partners that others() found last. Sends
+  /// nothing unless something has changed.
   virtual void announce(const std::string& node) = 0;
 };
 
-/// Readers and writers of a node, one after the other: a topic without a name is left out, and after the
-/// first that cannot be made no other is tried.
+/// Creates the readers and writers of a node. Leaves out topics without a name; tries no further one after
+/// the first failure.
 class Endpoints {
  public:
-  /// `at` has to outlive it.
+  /// `at` outlives this.
   explicit Endpoints(Participant& at) : at_{at} {}
 
+  /// Creates a reader in `to`.
   void read(std::unique_ptr<Reader>& to, const std::string& topic, std::string_view type, Qos qos) {
     if (!topic.empty() && made_) take(to, at_.reader(topic, std::string(type), qos));
   }
+  /// Creates a writer in `to`.
   void send(std::unique_ptr<Writer>& to, const std::string& topic, std::string_view type, Qos qos) {
     if (!topic.empty() && made_) take(to, at_.writer(topic, std::string(type), qos));
   }
-  /// Error of the object that could not be made.
+  /// Error of the reader or writer that could not be made.
   [[nodiscard]] const Result<void>& made() const noexcept { return made_; }
 
  private:
@@ -113,7 +118,7 @@ class Endpoints {
   }
 
   Participant& at_;
-  Result<void> made_;
+  Result<void> made_;  ///< first failure
 };
 
 }  // namespace chicane::ros

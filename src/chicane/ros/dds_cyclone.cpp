@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// DDS by Cyclone: the only file that includes it, besides the type in cdr_type.cpp.
+// DDS by Cyclone DDS: participant, readers and writers. Only this file and cdr_type.cpp include Cyclone.
 #include <dds/dds.h>
 #include <dds/ddsi/ddsi_serdata.h>
 #include <dds/ddsi/ddsi_sertype.h>
@@ -19,15 +19,18 @@
 namespace chicane::ros {
 namespace {
 
-constexpr std::size_t kCdrHeader = 4;
-constexpr uint32_t kTakenAtOnce = 64;
-constexpr dds_duration_t kWriteTimeout = DDS_MSECS(2);  // a control step cannot wait longer
+constexpr std::size_t kCdrHeader = 4;                   // [byte] header of a message in CDR
+constexpr uint32_t kTakenAtOnce = 64;                   // messages taken in a call of Cyclone; chosen
+constexpr dds_duration_t kWriteTimeout = DDS_MSECS(2);  // chosen: a control step cannot wait longer
+// Topic by which ROS 2 nodes announce endpoints.
 constexpr std::string_view kDiscovery = "ros_discovery_info";
-constexpr std::string_view kOurs = "chicane";  // user data of our writers of it, which fit any release
-// Lengths of a GUID there: up to ROS 2 Humble, and from Iron on, whose endpoints have a hash of their type.
+// User data of our writers of that topic, which fit any release.
+constexpr std::string_view kOurs = "chicane";
+// Lengths of a GUID in that topic: up to ROS 2 Humble, and since Iron, whose endpoints have a hash of their
+// type.
 constexpr std::size_t kHumbleGuid = 24, kIronGuid = 16;  // [byte]
 
-/// An entity of Cyclone DDS, deleted with its owner.
+/// Entity of Cyclone DDS, deleted with its owner.
 class Entity {
  public:
   explicit Entity(dds_entity_t handle = 0) : handle_{handle} {}
@@ -81,6 +84,7 @@ std::string user_data_of(const dds_qos_t* from) {
   return text;
 }
 
+/// Text for XML: all characters but plain ones as their numbers.
 std::string escaped(std::string_view text) {
   std::string safe;
   for (const char c : text) {
@@ -92,7 +96,7 @@ std::string escaped(std::string_view text) {
   return safe;
 }
 
-/// Cyclone's settings: the interface, and where there is no multicast the peers that are asked one by one.
+/// Settings of Cyclone in XML: the interface, and the peers if there is no multicast.
 std::string configuration(const NetworkOptions& options) {
   const bool is_loopback = options.interface == "lo";
   std::string peers = is_loopback ? R"(<Peer Address="127.0.0.1"/>)" : "";
@@ -233,6 +237,7 @@ class CycloneParticipant final : public Participant {
   }
 
  private:
+  /// Adds the endpoints of other programs in a built-in topic to `found`, and notes the partners' release.
   void collect(dds_entity_t builtin, bool is_writer, std::vector<Endpoint>& found) {
     std::array<void*, 256> samples{};
     std::array<dds_sample_info_t, 256> infos{};
@@ -254,7 +259,7 @@ class CycloneParticipant final : public Participant {
     if (count > 0) dds_return_loan(builtin, samples.data(), count);
   }
 
-  /// A topic is made once for a name and type.
+  /// Handle of a topic, which is made once for a name and type.
   Result<dds_entity_t> topic_of(const std::string& topic, const std::string& type) {
     const auto known = topics_.find({topic, type});
     if (known != topics_.end()) return known->second;
@@ -272,20 +277,20 @@ class CycloneParticipant final : public Participant {
 
   Entity domain_;
   Entity participant_;
-  Entity waitset_, publications_, subscriptions_;
-  dds_guid_t own_{};
-  std::vector<dds_guid_t> readers_, writers_;
-  std::unique_ptr<Writer> announcer_;
+  Entity waitset_, publications_, subscriptions_;  ///< waiting for messages, and readers of built-in topics
+  dds_guid_t own_{};                               ///< GUID of the participant
+  std::vector<dds_guid_t> readers_, writers_;      ///< GUIDs of our endpoints
+  std::unique_ptr<Writer> announcer_;              ///< writer of kDiscovery; null: nothing was announced
   std::size_t partners_guid_ = 0;   ///< length of the partners' GUIDs [byte]; 0: no partner is a ROS 2 node
-  std::size_t announced_guid_ = 0;  ///< length of the GUIDs that were announced
-  std::map<std::pair<std::string, std::string>, dds_entity_t> topics_;
+  std::size_t announced_guid_ = 0;  ///< length of the announced GUIDs [byte]
+  std::map<std::pair<std::string, std::string>, dds_entity_t> topics_;  ///< handles by name and type
 };
 
 }  // namespace
 
 Result<std::unique_ptr<Participant>> Participant::create(const NetworkOptions& options) {
-  // Silences Cyclone's own log: the error of a refused interface says as much, and strangers' packets could
-  // fill any log.
+  // Silence Cyclone's own log: our error names a refused interface, and packets of strangers could fill any
+  // log.
   dds_set_log_sink([](void*, const dds_log_data_t*) {}, nullptr);
   const auto domain_id = static_cast<dds_domainid_t>(options.domain);
   Entity domain(dds_create_domain(domain_id, configuration(options).c_str()));

@@ -27,17 +27,18 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr double kSoonest = 0.75;    // least time between cycles, in control periods
-constexpr double kLatest = 2.2;      // in usual times between cycles: two did not come, nothing was measured
-constexpr double kAbsence = 10.0;    // time without odometry after which cycles end [s]
-constexpr double kHabit = 0.1;       // weight of the newest in means
-constexpr double kLookPeriod = 0.5;  // period of looking for partners [s]
-constexpr double kStanding = 0.1;    // speed of a standing car, in full size [m/s]
-constexpr milliseconds kLongestWait{50};
+// Chosen.
+constexpr double kSoonest = 0.75;  // least time between cycles, in control periods
+constexpr double kLatest = 2.2;    // usual times between cycles after which odometry is missing: two messages
+constexpr double kAbsence = 10.0;  // [s] time without odometry after which cycles end
+constexpr double kNewest = 0.1;    // weight of the newest value in smoothed means
+constexpr double kLookPeriod = 0.5;       // [s] period of looking for partners
+constexpr double kStanding = 0.1;         // [m/s] speed below which a car in full size stands
+constexpr milliseconds kLongestWait{50};  // longest wait for a message
 
 double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 
-/// The controller's side of the topics, on the thread that calls run().
+/// Controller's node, on the thread that calls run().
 class DriveNode {
  public:
   DriveNode(const NodeOptions& node, const wire::ServeOptions& options,
@@ -59,7 +60,7 @@ class DriveNode {
         clock_{node.topics.odom},
         partners_{wanted_partners(node), node.network, seconds(options.silent_after)},
         period_{options.scenario.control_period},
-        habit_{period_} {}
+        usual_{period_} {}
 
   wire::ServeSummary run(const std::atomic<bool>& stop) {
     while (!stop) {
@@ -84,15 +85,16 @@ class DriveNode {
   }
 
  private:
-  /// Time until the next cycle without odometry is due.
+  /// Time until a cycle without odometry is due.
   [[nodiscard]] std::chrono::nanoseconds patience(Clock::time_point now) const {
     if (!is_driving_ || time_.is_simulated()) return kLongestWait;  // each tick of /clock ends it
-    const double left = kLatest * habit_ - seconds(now - last_cycle_);
+    const double left = kLatest * usual_ - seconds(now - last_cycle_);
     return std::clamp<std::chrono::nanoseconds>(
         std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * left)), std::chrono::nanoseconds{100'000},
         kLongestWait);
   }
 
+  /// Hooks that publish completed laps, too.
   run::ExternalDriveHooks with_laps_published(run::ExternalDriveHooks hooks) {
     hooks.on_lap = [this, on_lap = std::move(hooks.on_lap)](const telemetry::CompletedLap& lap) {
       publisher_->publish(lap);
@@ -101,6 +103,7 @@ class DriveNode {
     return hooks;
   }
 
+  /// Expected time from odometry until the command acts [s].
   [[nodiscard]] double delay() const { return options_.scenario.latency + turn_around_; }
 
   void read_clock() {
@@ -125,7 +128,7 @@ class DriveNode {
     }
   }
 
-  /// Into the frame of the road. Says once whether there is a transform.
+  /// Brings odometry into the frame of the road. Reports once whether there is a transform.
   void bring_to_map(protocol::OdometryMessage& odometry) {
     if (odometry.frame == node_.frames.map) return;
     const auto place = frames_.find(node_.frames.map, odometry.frame);
@@ -163,27 +166,27 @@ class DriveNode {
     }
   }
 
-  /// Begins with another sender: another car, or the same after a restart.
+  /// Begins with another sender of odometry: another car, or the same one after a restart.
   void begin(std::uint64_t writer, const protocol::OdometryMessage& first) {
     writer_ = writer;
     ++summary_.connections;
     clock_.forget();
     drive_.begin();
     is_driving_ = false;
-    habit_ = period_;
+    usual_ = period_;
     has_transform_.reset();
     log_.say(fmt::format("odometry of {} in {} by {}", first.child_frame, first.frame, node_.topics.odom));
   }
 
-  /// A cycle, if one is due.
+  /// Does a control cycle if one is due, with odometry or without.
   void cycle(Clock::time_point now) {
     const double since = seconds(now - last_cycle_);
     if (is_fresh_ && (!is_driving_ || since >= kSoonest * period_)) {
       is_fresh_ = false;
       if (is_driving_ && !was_blind_)
-        habit_ = std::max(period_, habit_ + kHabit * (std::min(since, 1.0) - habit_));
+        usual_ = std::max(period_, usual_ + kNewest * (std::min(since, 1.0) - usual_));
       was_blind_ = false;
-      // The stamp is the time of measurement; time must not go back after a cycle without odometry.
+      // The stamp is the time of measurement, but time must not go back after a cycle without odometry.
       const Clock::time_point moment =
           is_driving_ ? std::max(moment_, last_cycle_ + milliseconds{1}) : moment_;
       const double time = drive_.time(moment);
@@ -192,13 +195,12 @@ class DriveNode {
         ++summary_.unusable;
         log_.complain(fmt::format("{}: got numbers that are not finite", node_.topics.odom));
       }
-      const bool has_road = sight_.has_road();
-      if (!has_road)
+      if (!sight_.has_road())
         return log_.complain(fmt::format("no path on {} yet: the car stands", node_.topics.path));
       answer(measured, moment, odometry_.stamp);
       return;
     }
-    if (!is_driving_ || since < kLatest * habit_) return;
+    if (!is_driving_ || since < kLatest * usual_) return;
     const double silence = seconds(now - arrived_);
     if (silence > kAbsence) {
       is_driving_ = false;
@@ -216,6 +218,7 @@ class DriveNode {
         fmt::format("no odometry on {} for {:.1f} s: the guard stops the car", node_.topics.odom, silence));
   }
 
+  /// Computes and sends the command for a measurement at `received`, or for a missing one.
   void answer(const std::optional<model::Measurement>& measured, Clock::time_point received,
               std::int64_t stamp) {
     const double usual = delay();
@@ -230,7 +233,7 @@ class DriveNode {
     last_speed_ = act_speed;
     send(frame.result.command, act_speed, stamp, &drive_.stop(), frame.time);
     const Clock::time_point sent = time_.now();
-    turn_around_ += kHabit * (std::min(seconds(sent - received), period_) - turn_around_);
+    turn_around_ += kNewest * (std::min(seconds(sent - received), period_) - turn_around_);
     sight_.sent(drive_.time(sent), frame.result.command);
     ++summary_.answers;
     if (frame.guard.gated) ++summary_.interventions;
@@ -239,7 +242,7 @@ class DriveNode {
                         1e-9 * static_cast<double>(time_.stamp_now()) - drive_.time(time_.now()));
   }
 
-  /// The stop goes before the command that it belongs to.
+  /// Sends a command that acts at `speed` [m/s], after its stop plan. `time`: run time of the cycle [s].
   void send(const model::Command& command, double speed, std::int64_t stamp, const safety::StopPlan* stop,
             double time) {
     if (topics_.stop_plan && stop != nullptr && stop->size > 0) {
@@ -297,7 +300,7 @@ class DriveNode {
 
   [[nodiscard]] double speed_now() const { return std::fabs(odometry_.vx); }
 
-  /// The stop at hand, as the car's receiver would drive it when commands cease.
+  /// Sends the next command of the stop plan, as the car's receiver would execute it when commands cease.
   void play_stop(Clock::time_point now) {
     is_fresh_ = false;
     if (seconds(now - last_cycle_) < period_) return;
@@ -358,30 +361,32 @@ class DriveNode {
   wire::SparseLog log_;
   run::ExternalDriveHooks hooks_;
   run::ExternalDrive drive_;
-  NodeClock time_;
-  CarSight sight_;
-  ClockWatch clock_;
-  FrameTree frames_;
+  NodeClock time_;                       ///< time of this node
+  CarSight sight_;                       ///< measurements from odometry
+  ClockWatch clock_;                     ///< stamps of the odometry
+  FrameTree frames_;                     ///< frames by /tf and /tf_static
   std::optional<bool> has_transform_{};  ///< whether odometry has a transform to the map, as reported last
   PartnerWatch partners_;
   wire::ServeSummary summary_;
-  protocol::StopMessage stop_message_;
+  protocol::StopMessage stop_message_;  ///< message of the current stop plan
 
-  const double period_;       ///< control period [s]
-  double habit_;              ///< usual time from cycle to cycle [s]
-  double turn_around_ = 0.0;  ///< time from odometry to command [s]
-  double last_speed_ = 0.0;   ///< speed at which the last command acts [m/s]
-  std::uint64_t writer_ = 0;  ///< writer of the odometry
-  protocol::OdometryMessage odometry_;
-  Clock::time_point arrived_{}, moment_{}, last_cycle_{}, looked_{};
-  bool is_fresh_ = false;    ///< odometry waits for a cycle
-  bool is_driving_ = false;  ///< cycles continue, with odometry or without
-  bool was_blind_ = false;   ///< the last cycle had no odometry
-  bool is_silent_ = false;   ///< missing odometry was reported
-  bool is_stopped_ = false;  ///< stopped by request
-  std::optional<safety::StopPlayer> player_;
-  model::Command stopping_;  ///< the last command before the stop
-  bool has_said_clock_ = false;
+  const double period_;                       ///< control period [s]
+  double usual_;                              ///< usual time from cycle to cycle [s]
+  double turn_around_ = 0.0;                  ///< time from odometry to command [s]
+  double last_speed_ = 0.0;                   ///< speed at which the last command acts [m/s]
+  std::uint64_t writer_ = 0;                  ///< writer of the odometry; 0: none yet
+  protocol::OdometryMessage odometry_;        ///< newest odometry
+  Clock::time_point arrived_{}, moment_{};    ///< times of its arrival, and of its measurement
+  Clock::time_point last_cycle_{};            ///< time of the last cycle
+  Clock::time_point looked_{};                ///< time of the last look for partners
+  bool is_fresh_ = false;                     ///< odometry waits for a cycle
+  bool is_driving_ = false;                   ///< cycles continue, with odometry or without
+  bool was_blind_ = false;                    ///< the last cycle had no odometry
+  bool is_silent_ = false;                    ///< missing odometry was reported
+  bool is_stopped_ = false;                   ///< stopped by request
+  std::optional<safety::StopPlayer> player_;  ///< executes the stop plan of a stop by request
+  model::Command stopping_;                   ///< last command before that stop
+  bool has_said_clock_ = false;               ///< a /clock that is not used was reported
 };
 
 }  // namespace
@@ -417,7 +422,7 @@ Result<wire::ServeSummary> drive(const NodeOptions& node, const wire::ServeOptio
     DriveNode driving(node, options, std::move(*participant), std::move(*topics), std::move(*publisher),
                       std::move(parameters), std::move(controller), hooks);
     summary = driving.run(stop);
-    // No task of the services is left on the network thread when they end.
+    // Wait until the network thread has done the tasks of the services, which end with this block.
     std::promise<void> is_idle;
     (*server)->run_after(std::chrono::nanoseconds{0}, [&is_idle] { is_idle.set_value(); });
     is_idle.get_future().wait();

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Time of a ROS 2 node: stamps of messages checked against arrival times, and simulated time by /clock.
 #include "chicane/ros/node_clock.hpp"
 
 #include <algorithm>
@@ -11,7 +12,7 @@ namespace chicane::ros {
 namespace {
 
 constexpr double kNanosecond = 1e-9;
-constexpr double kHour = 3600.0;
+constexpr double kHour = 3600.0;  // [s] difference of clocks from which time counts as simulated; chosen
 
 double seconds(std::int64_t nanoseconds) { return kNanosecond * static_cast<double>(nanoseconds); }
 
@@ -24,22 +25,22 @@ bool ClockWatch::accept(std::int64_t stamp, std::int64_t received, std::int64_t 
     const double age = seconds(system - stamp);
     const bool was = std::exchange(is_simulated_, std::fabs(age) > kHour);
     if (is_simulated_ && !was) {
-      say(fmt::format(
+      news_ = fmt::format(
           "the stamps of {} are {:.0f} h from this machine's time: simulated time (/clock), or another "
           "machine's clock; the moment of arrival counts",
-          topic_, std::fabs(age) / kHour));
+          topic_, std::fabs(age) / kHour);
     }
     return true;
   }
   const double by_stamp = seconds(stamp - last_->stamp);
   const double by_arrival = seconds(received - last_->received);
   if (std::fabs(by_stamp - by_arrival) > kJump) {
-    say(fmt::format("the clock of {} jumped by {:+.1f} s", topic_, by_stamp - by_arrival));
+    news_ = fmt::format("the clock of {} jumped by {:+.1f} s", topic_, by_stamp - by_arrival);
     offset_ = received - stamp;
   } else if (by_stamp <= 0.0) {
     if (!std::exchange(has_said_dropped_, true))
-      say(fmt::format("a message of {} came {}: such messages are left out", topic_,
-                      by_stamp == 0.0 ? "twice" : "after a newer one"));
+      news_ = fmt::format("a message of {} came {}: such messages are left out", topic_,
+                          by_stamp == 0.0 ? "twice" : "after a newer one");
     return false;
   }
   follow(received - stamp, by_arrival);
@@ -47,14 +48,13 @@ bool ClockWatch::accept(std::int64_t stamp, std::int64_t received, std::int64_t 
   return true;
 }
 
-/// Clocks drift apart; stamps of simulated time may go slower than the clock does.
+// Clocks drift apart, and stamps of simulated time may run slower than the machine's clock: the offset of the
+// fastest message is forgotten slowly.
 void ClockWatch::follow(std::int64_t lag, double since) {
-  constexpr double kDrift = 1e-3;  // rate at which the quickest message is forgotten [s/s]
+  constexpr double kDrift = 1e-3;  // growth of the offset with time [s/s]; chosen: beyond the drift of clocks
   offset_ = std::min(offset_ + static_cast<std::int64_t>(kDrift * since / kNanosecond), lag);
   if (seconds(lag - offset_) > kLatest) offset_ = lag;
 }
-
-void ClockWatch::say(std::string line) { news_ = std::move(line); }
 
 std::string ClockWatch::news() { return std::exchange(news_, {}); }
 

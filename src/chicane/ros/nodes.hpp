@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The two ROS 2 nodes, controller and simulator, and their options.
 #pragma once
 
 #include <atomic>
@@ -17,7 +18,7 @@
 
 namespace chicane::ros {
 
-/// Topics by name, as f1tenth_gym_ros has them. An empty name: not read, not sent.
+/// Names of topics; defaults as in f1tenth_gym_ros. Topics with an empty name are neither read nor sent.
 struct TopicNames {
   std::string odom = "/ego_racecar/odom";        ///< nav_msgs/msg/Odometry, from the car
   std::string drive = "/drive";                  ///< ackermann_msgs/msg/AckermannDriveStamped, to the car
@@ -33,12 +34,12 @@ struct TopicNames {
 /// Meaning of a drive message to the car.
 struct DriveOptions {
   bool is_by_speed = true;  ///< the car holds `speed`; false: it takes `acceleration`
-  /// The car's own speed controller closes a gap of speed in about this time [s], (0, 5]: the speed that is
-  /// sent is the wanted acceleration times this ahead.
+  /// Time in which the car's speed controller closes a gap of speed [s], (0, 5]. The speed that is sent is
+  /// this time multiplied by the wanted acceleration above the current one. Default chosen.
   double speed_lead = 0.25;
 };
 
-/// One ROS 2 program of ours, controller or simulator.
+/// Options of a ROS 2 node, controller or simulator.
 struct NodeOptions {
   NetworkOptions network{};
   TopicNames topics{};
@@ -47,39 +48,39 @@ struct NodeOptions {
   /// Origin of the odometry's child frame: the middle of the rear axle; false: the centre of mass.
   bool is_base_at_rear_axle = true;
   bool is_time_simulated = false;  ///< the controller's time is /clock's
-  /// Seconds of the simulator in a second of the clock, > 0; it then sends /clock. 0: as many, without.
+  /// Simulated seconds per second of the clock, > 0; the simulator then sends /clock. 0: one, without /clock.
   double pace = 0.0;
-  std::string map_file{};              ///< map that the simulated /scan sees; empty: the road's edges
-  Qos odom_qos{.is_reliable = false};  ///< settings of the controller's reader; the simulator sends reliably
-  Qos drive_qos{};                     ///< settings of its writer; the simulator reads best effort
+  std::string map_file{};              ///< map that the simulated laser sees; empty: the edges of the road
+  Qos odom_qos{.is_reliable = false};  ///< quality of the controller's reader; the simulator sends reliably
+  Qos drive_qos{};  ///< quality of the controller's writer; the simulator reads best effort
 };
 
-/// The walls of an occupancy map (protocol/occupancy_map.hpp): cells darker than occupied_thresh; unknown
-/// ones are free. Fails as protocol::read_map().
+/// Walls of an occupancy map (protocol/occupancy_map.hpp): cells darker than occupied_thresh; unknown cells
+/// are free. Fails as protocol::read_map().
 [[nodiscard]] Result<sim::OccupancyGrid> read_map(const std::string& file);
 
-/// `chicane ros`: wire::serve for a car that speaks ROS 2. Reads odometry, answers each with a command, and
-/// publishes the run (run_publisher.hpp). Dashboard, settings and recording are those of `serve`.
+/// `chicane ros`: wire::serve for a car with ROS 2. Answers odometry with commands, and publishes the run
+/// (run_publisher.hpp). Dashboard, settings and recording are those of `serve`.
 ///
-/// A control cycle begins with odometry, at most one each 0.75 control periods. If none comes in time the
-/// cycle has no measurement, and the guard decides; after kAbsence without odometry cycles end until it
-/// returns. TopicNames::stop makes the car execute its stop plan; it continues only from rest.
+/// Each odometry begins a control cycle, at most one in 0.75 control periods. If none comes in time, the
+/// guard decides in a cycle without a measurement; after ten seconds without odometry, cycles end until it
+/// returns. TopicNames::stop makes the car execute its stop plan; the car drives on only from rest.
 ///
-/// Uses of the options: track, lap, scenario, step_budget, forget_after, silent_after, server (dashboard).
-/// kIo when DDS or the port fails.
+/// Uses track, lap, scenario, step_budget, forget_after, silent_after and server of `options`. kIo when DDS
+/// or the port fails.
 [[nodiscard]] Result<wire::ServeSummary> drive(const NodeOptions& node, const wire::ServeOptions& options,
                                                std::unique_ptr<controller::Controller> controller,
                                                wire::ServeHooks hooks, wire::Endpoint* viewer,
                                                std::vector<net::Asset> assets, const std::atomic<bool>& stop);
 
-/// `chicane ros --simulate`: our car and track as ROS 2 topics, in real time: odometry, transform, IMU and
-/// laser scan out, drive commands in. The car waits for the first command. Each command acts
-/// `scenario.latency` after it arrived. When they cease `scenario.guard.receiver` stops the car, by the last
-/// command's stop plan if it had one.
+/// `chicane ros --simulate`: our car and track as ROS 2 topics, in real time. Sends odometry, transforms, IMU
+/// and laser scans; reads drive commands. The car waits for the first command. A command acts
+/// `scenario.latency` after it arrived. When commands cease, `scenario.guard.receiver` stops the car, by the
+/// stop plan of the last command if it had one.
 ///
-/// Uses of the scenario: track, car, plant_options, vehicle, guard.receiver, sensor, seed, laps, time_limit,
-/// latency, control_period (of the odometry). Ends when the laps are driven, the car is lost, time is up, or
-/// `stop` is set, with the results so far.
+/// Uses track, car, plant_options, vehicle, guard.receiver, sensor, seed, laps, time_limit, latency and
+/// control_period (of the odometry) of the scenario. Ends, with the results so far, when the laps are driven,
+/// the car is lost, the time is up, or `stop` is set.
 [[nodiscard]] Result<wire::SimulateReport> simulate(const NodeOptions& node,
                                                     const scenario::Scenario& scenario,
                                                     const wire::SimulateHooks& hooks,

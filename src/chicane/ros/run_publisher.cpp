@@ -13,18 +13,17 @@
 namespace chicane::ros {
 namespace {
 
-constexpr double kDiagnosticsPeriod = 0.2;  // [s]
-constexpr double kRunPeriod = 1.0;          // [s]
-// Topics left out: sent by the car or its simulator, drawn by Foxglove alone, or long and only on request.
+constexpr double kDiagnosticsPeriod = 0.2;  // [s] least time between diagnostics; chosen
+constexpr double kRunPeriod = 1.0;          // [s] least time between descriptions of the run; chosen
+// Topics left out: those that the car or its simulator sends, that Foxglove alone draws, or that are long.
 constexpr std::array<std::string_view, 7> kNotOurs{
     "/tf", "/drive", "/clock", "/scene", "/chicane/change", "/chicane/limit", "/track/racing_line"};
 
 bool is_ours(std::string_view name) {
-  for (const std::string_view each : kNotOurs)
-    if (each == name) return false;
-  return true;
+  return std::find(kNotOurs.begin(), kNotOurs.end(), name) == kNotOurs.end();
 }
 
+/// Least time between two messages of a topic [s].
 double period_of(const protocol::RosTopic& topic) {
   if (topic.name == "/diagnostics") return kDiagnosticsPeriod;
   return topic.cadence == protocol::Cadence::kRun ? kRunPeriod : 0.0;
@@ -76,7 +75,7 @@ namespace {
 using protocol::foxglove::Parameter;
 using protocol::foxglove::ParameterStore;
 
-/// Values of the named parameters; an unknown one has no value.
+/// Parameters of these names; an unknown one has no value.
 std::vector<Parameter> values_of(ParameterStore& store, const std::vector<std::string>& names) {
   std::vector<Parameter> values;
   for (const std::string& name : names) {
@@ -86,6 +85,9 @@ std::vector<Parameter> values_of(ParameterStore& store, const std::vector<std::s
   return values;
 }
 
+// Functions that reply to a request, one for each service.
+
+/// Names of the parameters that begin with one of the requested prefixes.
 std::string list(ParameterStore& store, std::string_view bytes) {
   const auto request = protocol::decode<protocol::NamesRequest>(bytes);
   if (!request) return {};
@@ -101,7 +103,7 @@ std::string list(ParameterStore& store, std::string_view bytes) {
   return encode(reply);
 }
 
-/// The named parameters, in a reply of one kind.
+/// The requested parameters, as a reply of one type.
 template <class Reply>
 std::string named(ParameterStore& store, std::string_view bytes) {
   const auto request = protocol::decode<protocol::NamesRequest>(bytes);
@@ -128,7 +130,7 @@ std::string types(ParameterStore& store, std::string_view bytes) {
   return reply.bytes();
 }
 
-/// Nothing: the store sets one after the other.
+/// Refusal: the store can only set one parameter after the other.
 std::string set_atomically(ParameterStore&, std::string_view bytes) {
   const auto request = protocol::decode<protocol::SetRequest>(bytes);
   if (!request) return {};
@@ -137,12 +139,13 @@ std::string set_atomically(ParameterStore&, std::string_view bytes) {
   return reply.text("got set_parameters_atomically, expected set_parameters").bytes();
 }
 
+/// Service of ROS 2 nodes: name, type, and the function that replies.
 struct Offer {
   const char* name;
   const char* type;
   std::string (*answer)(ParameterStore&, std::string_view);
 };
-// rclpy's clients, as `ros2 param`, wait for all of them.
+// All six services, because clients of rclpy, such as `ros2 param`, wait for all of them.
 constexpr std::array<Offer, 6> kOffers{
     {{"list_parameters", "ListParameters", list},
      {"get_parameters", "GetParameters", named<protocol::GetReply>},
@@ -170,7 +173,7 @@ Result<std::unique_ptr<ParameterServices>> ParameterServices::create(Participant
 }
 
 void ParameterServices::serve() {
-  // rmw_cyclonedds has the call in the message, behind its header; rmw_fastrtps beside it.
+  // The call of a request is in the message behind the header (rmw_cyclonedds), or beside it (rmw_fastrtps).
   constexpr std::size_t kHeader = 4, kCall = sizeof(protocol::ServiceCall);
   for (Service& service : services_) {
     for (Sample& sample : service.requests->take()) {

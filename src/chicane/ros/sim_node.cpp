@@ -34,7 +34,7 @@ Result<sim::OccupancyGrid> read_map(const std::string& file) {
                           .resolution = map->resolution,
                           .origin = {.x = map->origin.x(), .y = map->origin.y(), .psi = map->yaw}};
   grid.is_wall.reserve(map->image.values.size());
-  for (int y = map->image.height - 1; y >= 0; --y)  // the image begins at the top
+  for (int y = map->image.height - 1; y >= 0; --y)  // rows of the image begin at the top
     for (int x = 0; x < map->image.width; ++x) grid.is_wall.push_back(map->darkness(x, y) > map->occupied);
   return grid;
 }
@@ -43,11 +43,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kScanPeriod = 0.025;            // period of the Hokuyo UST-10LX [s]
-constexpr double kTickPeriod = 0.005;            // period of /clock [s]
-constexpr double kScannerAhead = 0.275 / 0.307;  // ahead of the rear axle, in wheelbases (f1tenth_gym_ros)
-constexpr double kLookPeriod = 0.5;              // period of looking for partners [s]
-constexpr double kRangeMin = 0.02;               // [m]
+constexpr double kScanPeriod = 0.025;  // [s] period of scans, by the data sheet of the Hokuyo UST-10LX
+constexpr double kTickPeriod = 0.005;  // [s] period of /clock; chosen
+// Laser ahead of the rear axle, in wheelbases, by f1tenth_gym_ros.
+constexpr double kScannerAhead = 0.275 / 0.307;
+constexpr double kLookPeriod = 0.5;  // [s] period of looking for partners; chosen
+constexpr double kRangeMin = 0.02;   // [m] least range of the laser, by its data sheet
+constexpr double kRounding = 1e-9;   // [s] rounding of times
 
 double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 Clock::duration duration(double seconds) {
@@ -70,7 +72,7 @@ std::vector<WantedPartner> partners_of_simulator(const NodeOptions& node) {
            false}};
 }
 
-/// Topics of the simulator.
+/// Readers and writers of the simulator; null for topics without a name.
 struct SimTopics {
   std::unique_ptr<Reader> drive{}, stop_plan{}, initial_pose{};
   std::unique_ptr<Writer> odom{}, transform{}, fixed_transform{}, imu{}, scan{}, map{}, clock{};
@@ -96,9 +98,9 @@ struct SimTopics {
   }
 };
 
-/// The walls of a road as a map: cells with a point of them, and a margin.
+/// Map of walls: a cell is wall if a line of `walls` crosses it. `resolution`: size of cells [m].
 sim::OccupancyGrid drawn(const std::vector<std::vector<Vec2>>& walls, double resolution) {
-  constexpr double kMargin = 1.0;  // [m]
+  constexpr double kMargin = 1.0;  // [m] free margin around the walls; chosen
   Vec2 low = walls.front().front(), high = low;
   for (const std::vector<Vec2>& wall : walls) {
     for (const Vec2& point : wall) {
@@ -127,7 +129,7 @@ sim::OccupancyGrid drawn(const std::vector<std::vector<Vec2>>& walls, double res
   return grid;
 }
 
-/// Walls that the laser sees: the road's, or a map's.
+/// Walls that the laser sees: edges of the road, or walls of a map.
 class Walls {
  public:
   static Result<Walls> create(const road::Track& track, double size, const std::string& map_file) {
@@ -143,7 +145,7 @@ class Walls {
     if (!map) return fail(map.error().code, map_file + ": " + map.error().message);
     return Walls(std::move(*map), std::move(*grid));
   }
-  /// nav_msgs/msg/OccupancyGrid, in the frame `frame`.
+  /// Message nav_msgs/msg/OccupancyGrid in the frame `frame`.
   [[nodiscard]] std::string message(std::int64_t stamp, const std::string& frame) const {
     constexpr std::int8_t kOccupied = 100, kFree = 0;
     protocol::CdrWriter to(grid_.is_wall.size() + 200);
@@ -153,6 +155,7 @@ class Walls {
     for (const bool is_wall : grid_.is_wall) to.put(is_wall ? kOccupied : kFree);
     return to.bytes();
   }
+  /// Ranges from the pose of the laser [m].
   void scan(const model::Pose& sensor, std::span<float> ranges) const {
     std::visit([&](const auto& scanner) { scanner.scan(sensor, ranges); }, scanner_);
   }
@@ -160,7 +163,7 @@ class Walls {
     return std::visit(
         [](const auto& scanner) -> const sim::RangeScannerOptions& { return scanner.options(); }, scanner_);
   }
-  /// Whether a cell of the map is wall; a road is free.
+  /// Whether a place is wall of a map; without a map every place is free.
   [[nodiscard]] bool is_wall(const Vec2& place) const {
     const auto* map = std::get_if<sim::MapScanner>(&scanner_);
     return map != nullptr && map->is_wall(place);
@@ -173,6 +176,7 @@ class Walls {
   sim::OccupancyGrid grid_;
 };
 
+/// Simulator's node, on the thread that calls run().
 class SimNode {
  public:
   SimNode(const NodeOptions& node, const scenario::Scenario& scenario, const wire::SimulateHooks& hooks,
@@ -220,18 +224,20 @@ class SimNode {
   }
 
  private:
-  /// Simulated time [s]: the world's, once it moves.
+  /// Simulated time that belongs to `now` [s].
   [[nodiscard]] double elapsed(Clock::time_point now) const { return pace_ * seconds(now - began_); }
+  /// Stamp of a simulated time [ns since 1970].
   [[nodiscard]] std::int64_t stamp(double time) const {
     return epoch_ + static_cast<std::int64_t>(std::llround(1e9 * time));
   }
+  /// Simulated time of the next message [s].
   [[nodiscard]] double next_moment() const { return std::min({next_odometry_, next_scan_, next_tick_}); }
 
   // ---- In ----
 
   void read_commands() {
     std::vector<Sample> drives = topics_.drive ? topics_.drive->take() : std::vector<Sample>{};
-    if (topics_.stop_plan) {  // after the commands: each was sent after its stop
+    if (topics_.stop_plan) {  // after the commands, each of which was sent after its stop plan
       for (const Sample& sample : topics_.stop_plan->take()) {
         if (auto stop = protocol::decode<protocol::StopMessage>(sample.bytes))
           stops_[stop_count_++ % stops_.size()] = *stop;
@@ -253,6 +259,7 @@ class SimNode {
     }
   }
 
+  /// Begins with another sender of commands; the first one starts the world.
   void begin(std::uint64_t writer) {
     writer_ = writer;
     if (report_.connections++ > 0) return log_.say(fmt::format("another sender on {}", node_.topics.drive));
@@ -264,7 +271,8 @@ class SimNode {
     log_.say(fmt::format("first command on {}", node_.topics.drive));
   }
 
-  /// Queues a command with its demand: the pedal is computed at the speed when it acts.
+  /// Queues a command. Its wanted speed or acceleration stands in for the pedal, which depends on the speed
+  /// at which the command acts.
   void accept(const protocol::DriveMessage& message) {
     ++report_.answers;
     const double time = car_.world.time();
@@ -304,6 +312,7 @@ class SimNode {
 
   // ---- Physics ----
 
+  /// Physics up to now. Reports stops and laps.
   void move(Clock::time_point now) {
     const double speed = car_.speed();
     const double forgotten = car_.catch_up(elapsed(now), [this] { return act(); });
@@ -317,8 +326,9 @@ class SimNode {
     if (const auto lap = car_.account.take_lap(); lap && hooks_.on_lap) hooks_.on_lap(*lap);
   }
 
+  /// Command of the actuators in the next physics step.
   model::Command act() {
-    model::Command command = car_.in_flight.at(car_.world.time() + 1e-9);
+    model::Command command = car_.in_flight.at(car_.world.time() + kRounding);
     command.throttle = throttle_of(scenario_.vehicle, command.throttle, car_.speed(), node_.drive);
     applied_ = car_.receiver.guard(command, car_.world.time(), car_.speed());
     return applied_;
@@ -326,17 +336,18 @@ class SimNode {
 
   // ---- Out ----
 
+  /// Sends the messages that are due.
   void sense(Clock::time_point now) {
     const double time = report_.connections > 0 ? car_.world.time() : elapsed(now);
-    if (topics_.clock && time + 1e-9 >= next_tick_) {
+    if (topics_.clock && time + kRounding >= next_tick_) {
       next_tick_ = std::max(next_tick_ + kTickPeriod, time);
       static_cast<void>(topics_.clock->write(protocol::encode(protocol::ClockMessage{stamp(time)})));
     }
-    if (time + 1e-9 >= next_odometry_) {
+    if (time + kRounding >= next_odometry_) {
       next_odometry_ = std::max(next_odometry_ + scenario_.control_period, time);
       send_odometry(time);
     }
-    if (time + 1e-9 < next_scan_) return;
+    if (time + kRounding < next_scan_) return;
     next_scan_ = std::max(next_scan_ + kScanPeriod, time);
     if (topics_.scan && topics_.scan->matched() > 0) send_scan(time);
   }
@@ -370,7 +381,7 @@ class SimNode {
     if (report_.connections > 0) record(seen);
   }
 
-  /// Records the world's state, with the last command as the answer.
+  /// Counts a cycle: the state of the world, with the last command as the answer.
   void record(const model::Measurement& seen) {
     car_.write(seen, applied_, frame_);
     frame_.result.command.throttle = applied_.throttle;
@@ -422,26 +433,27 @@ class SimNode {
   SimTopics topics_;
   wire::SparseLog log_;
   const Walls& walls_;
-  run::SimulatedCar& car_;  ///< commands on their way hold the wanted speed or acceleration as throttle
+  run::SimulatedCar& car_;  ///< its commands in flight hold the wanted speed or acceleration as throttle
   run::StopNews stop_news_;
   PartnerWatch partners_;
   wire::SimulateReport report_;
   telemetry::Frame frame_;
 
-  const double scanner_ahead_;  ///< distance ahead of the rear axle [m]
-  const double pace_;           ///< seconds simulated in a second of the clock
-  std::vector<float> ranges_;
-  std::array<protocol::StopMessage, 8> stops_{};  ///< the last ones, a ring
-  std::size_t stop_count_ = 0;
-  std::uint64_t writer_ = 0;  ///< writer of the commands
-  Clock::time_point started_{}, began_{}, looked_{};
+  const double scanner_ahead_;                    ///< distance ahead of the rear axle [m]
+  const double pace_;                             ///< seconds simulated in a second of the clock
+  std::vector<float> ranges_;                     ///< ranges of the last scan [m]
+  std::array<protocol::StopMessage, 8> stops_{};  ///< ring of the newest stop plans; size chosen
+  std::size_t stop_count_ = 0;                    ///< stop plans so far
+  std::uint64_t writer_ = 0;                      ///< writer of the commands; 0: none yet
+  Clock::time_point started_{}, looked_{};        ///< times of the start, and of the last look for partners
+  Clock::time_point began_{};                     ///< time of the clock at the simulated time 0
   std::int64_t epoch_ = std::chrono::duration_cast<std::chrono::nanoseconds>(
                             std::chrono::system_clock::now().time_since_epoch())
                             .count();                           ///< simulated time 0 [ns since 1970]
-  double next_odometry_ = 0.0, next_scan_ = 0.0;                ///< [s]
+  double next_odometry_ = 0.0, next_scan_ = 0.0;                ///< times of the next messages [s]
   double next_tick_ = std::numeric_limits<double>::infinity();  ///< time of the next /clock message [s]
-  double arrived_ = 0.0;                                        ///< the last command [s]
-  model::Command applied_;
+  double arrived_ = 0.0;                                        ///< time of the last command's arrival [s]
+  model::Command applied_;                                      ///< command of the last physics step
 };
 
 }  // namespace

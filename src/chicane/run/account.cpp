@@ -15,7 +15,7 @@
 namespace chicane::run {
 namespace {
 
-constexpr double kStanding = 0.02;  // [m/s] a slower car stands; chosen
+constexpr double kStanding = 0.02;  // [m/s] speed below which a simulated car stands; chosen
 constexpr const char* kTimeLimit = "time limit reached";
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
@@ -82,7 +82,7 @@ void Account::add_physics(const sim::World& world, bool is_manual) noexcept {
   edge_distance_ = world.state().edge_distance;
   const bool stands = std::fabs(world.plant().output().speed) < kStanding;
   stood_for_ = stands ? stood_for_ + world.plant().step_length() : 0.0;
-  count_laps(world.state(), world.judge().last_corner_times());
+  add_sighting(world.state(), world.judge().last_corner_times());
   look_for_end(world.state(), world.time(), world.plant().step_length(), is_manual);
 }
 
@@ -94,10 +94,6 @@ void Account::add(telemetry::Frame& frame) noexcept {
 }
 
 void Account::add_sighting(const sim::WorldState& car, std::span<const double> corner_times) noexcept {
-  count_laps(car, corner_times);
-}
-
-void Account::count_laps(const sim::WorldState& car, std::span<const double> corner_times) noexcept {
   if (car.lap <= laps_seen_) return;
   laps_seen_ = car.lap;
   metrics_.lap_completed(car.last_lap_time, car.last_sector_times, corner_times);
@@ -181,21 +177,19 @@ telemetry::RunSummary Account::summary(std::optional<double> duration) const {
 
 namespace {
 
-constexpr double kShare = 0.9;        // least length of a lap over the first lap's; chosen
-constexpr double kMostTurned = 0.45;  // [rad] turn against the first crossing: roads cross at 30° or more
-constexpr double kSlack = 5.0;        // [m] distance beyond the one that the speed explains; chosen
-
-Vec2 direction_of(double heading) noexcept { return {cos(heading), sin(heading)}; }
+constexpr double kLeastShare = 0.9;   // least length of a lap over the first lap's; chosen
+constexpr double kMostTurned = 0.45;  // [rad] largest angle of a crossing to the first one; chosen: below
+                                      // 30°, the least angle between two roads that cross
+// Distance beyond what the speed explains that shows that a car was placed elsewhere [m]; chosen.
+constexpr double kMoved = 5.0;
 
 }  // namespace
-
-void LapLearner::reset() noexcept { *this = {}; }
 
 void LapLearner::start(double time, const model::Pose& car) noexcept {
   reset();
   has_line_ = true;
   line_ = last_ = {car.x, car.y};
-  direction_ = direction_of(car.psi);
+  direction_ = {cos(car.psi), sin(car.psi)};
   lap_start_ = state_.time = time;
   state_.is_timed = true;
 }
@@ -204,7 +198,7 @@ void LapLearner::see(double time, const model::Pose& car, double speed) noexcept
   const Vec2 position{car.x, car.y};
   const double moved = (position - last_).norm();
   const double elapsed = time - state_.time;
-  if (!has_line_ || moved > 2.0 * speed * elapsed + kSlack) return start(time, car);
+  if (!has_line_ || moved > 2.0 * speed * elapsed + kMoved) return start(time, car);
   const double before = (last_ - line_).dot(direction_);
   const Vec2 from_line = position - line_;
   const double after = from_line.dot(direction_);
@@ -214,11 +208,10 @@ void LapLearner::see(double time, const model::Pose& car, double speed) noexcept
   state_.time = time;
   state_.lap_time = time - lap_start_;
   if ((before < 0.0) == (after < 0.0) || std::fabs(beside) > kReach) return;
-  // A road that crosses this one leads over the line, too, in another direction: that is no crossing of it.
-  const double turned = angle_difference(car.psi, atan2(direction_.y(), direction_.x()));
-  const double back =
-      std::min(std::fabs(turned), kPi - std::fabs(turned));  // counts a car that has turned round, too
-  if ((after > 0.0 ? std::fabs(turned) : back) > kMostTurned) return;
+  // A crossing road leads over the start line at another angle: ignore it. Backwards counts in both
+  // directions of the car, forwards only in the first one.
+  const double turned = std::fabs(angle_difference(car.psi, atan2(direction_.y(), direction_.x())));
+  if ((after > 0.0 ? turned : std::min(turned, kPi - turned)) > kMostTurned) return;
   if (after < 0.0) {
     ++backward_;
   } else if (backward_ > 0) {
@@ -229,7 +222,7 @@ void LapLearner::see(double time, const model::Pose& car, double speed) noexcept
 }
 
 void LapLearner::cross_line(double crossing) noexcept {
-  const bool is_lap = driven_ >= std::max(kLeast, kShare * lap_length_);
+  const bool is_lap = driven_ >= std::max(kLeast, kLeastShare * lap_length_);
   if (is_lap) count_lap(crossing);
   state_.lap_time = state_.time - crossing;
   lap_start_ = crossing;
@@ -243,12 +236,14 @@ void LapLearner::count_lap(double crossing) noexcept {
   state_.last_sector_times.fill(telemetry::kNotMeasured);
   const bool is_best = state_.lap == 1 || state_.last_lap_time < state_.best_lap_time;
   if (is_best) state_.best_lap_time = state_.last_lap_time;
-  state_.last_lap_was_clean = true;  // without a track nothing shows the contrary
+  state_.last_lap_was_clean = true;  // without a road no lap can be judged otherwise
 }
 
 namespace {
 
-AccountTerms terms(const road::Track* track, const scenario::Scenario& scenario, std::string_view remedy) {
+/// Terms of a run without an end, for a car of another program.
+AccountTerms external_terms(const road::Track* track, const scenario::Scenario& scenario,
+                            std::string_view remedy) {
   AccountTerms terms = terms_of(scenario, track);
   terms.car = scenario.vehicle.name;
   terms.laps = 0;
@@ -257,7 +252,7 @@ AccountTerms terms(const road::Track* track, const scenario::Scenario& scenario,
   return terms;
 }
 
-/// Sighting of a measured car, with wheels where its parameters have them.
+/// Sighting of a measured car: contact patches where the vehicle's parameters have its wheels.
 sim::Sighting sighting_of(const model::Measurement& seen, const model::VehicleParams& car) {
   const double edge = 0.5 * (car.track_width + car.tire_width);
   return {.pose = {.x = seen.x, .y = seen.y, .psi = seen.psi},
@@ -269,7 +264,7 @@ sim::Sighting sighting_of(const model::Measurement& seen, const model::VehiclePa
 }  // namespace
 
 Roadside::Roadside(const road::Track* track, const scenario::Scenario& scenario, std::string_view remedy)
-    : scenario_{scenario}, remedy_{remedy}, account_{terms(track, scenario, remedy)} {
+    : scenario_{scenario}, remedy_{remedy}, account_{external_terms(track, scenario, remedy)} {
   if (track != nullptr) judge_.emplace(*track);
 }
 
@@ -282,25 +277,25 @@ void Roadside::resume() noexcept {
 
 void Roadside::forget_track() {
   judge_.reset();
-  account_ = Account(terms(nullptr, scenario_, remedy_));
+  account_ = Account(external_terms(nullptr, scenario_, remedy_));
   events_before_ = 0;
   has_seen_ = false;
 }
 
 void Roadside::judge(telemetry::Frame& frame) noexcept {
   frame.is_judged = judge_ && frame.has_measurement;
-  if (frame.is_judged) look(frame);
+  if (frame.is_judged) judge_on_road(frame);
   account_.add(frame);
   if (frame.is_judged) {
     account_.add_sighting(judge_->state(), judge_->last_corner_times());
     frame.lap = account_.laps_completed();
   } else if (!judge_ && frame.has_measurement) {
-    learn(frame);
+    time_without_road(frame);
   }
   frame.completed_lap = account_.completed_lap();
 }
 
-void Roadside::look(telemetry::Frame& frame) noexcept {
+void Roadside::judge_on_road(telemetry::Frame& frame) noexcept {
   const sim::Sighting car = sighting_of(frame.measurement, scenario_.vehicle);
   if (has_seen_) {
     judge_->see(frame.time, car);
@@ -312,7 +307,7 @@ void Roadside::look(telemetry::Frame& frame) noexcept {
   frame.off_track_events += events_before_;
 }
 
-void Roadside::learn(telemetry::Frame& frame) noexcept {
+void Roadside::time_without_road(telemetry::Frame& frame) noexcept {
   const model::Measurement& seen = frame.measurement;
   learner_.see(frame.time, {.x = seen.x, .y = seen.y, .psi = seen.psi}, seen.speed);
   account_.add_sighting(learner_.state());
@@ -320,7 +315,5 @@ void Roadside::learn(telemetry::Frame& frame) noexcept {
   frame.lap_time = learner_.state().lap_time;
   frame.last_lap_time = learner_.state().last_lap_time;
 }
-
-telemetry::RunSummary Roadside::summary() const { return account_.summary(); }
 
 }  // namespace chicane::run

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One run in closed loop: simulated car, sensor and faults, control cycle, and the commands in flight between
-// them.
+// Closed loop of a run: simulated car, sensor, faults and control cycle, with the commands in flight between.
 #include "chicane/run/closed_loop.hpp"
 
 #include <algorithm>
@@ -81,16 +80,9 @@ void ClosedLoop::drive_on() {
   if (is_lost) restart();
 }
 
-bool ClosedLoop::advance(double budget) noexcept {
+bool ClosedLoop::advance_by(const StepTerms& terms) noexcept {
   const bool is_due = is_control_due();
-  if (is_due) control(budget, nullptr);
-  move();
-  return is_due;
-}
-
-bool ClosedLoop::advance(const GivenStep& given) noexcept {
-  const bool is_due = is_control_due();
-  if (is_due) control(0.0, &given);
+  if (is_due) control(terms);
   move();
   return is_due;
 }
@@ -101,13 +93,12 @@ void ClosedLoop::follow(double time, const model::State& car, double delay,
   seen_.reset();
   next_control_ = time;
   const GivenStep given{.delay = delay};
-  control(0.0, &given, &sent);
+  control({.given = &given, .sent = &sent});
   car_.account.add_physics(car_.world, true);
 }
 
-/// Advances the car by one physics step.
 void ClosedLoop::move() noexcept {
-  watch_faults();
+  update_faults();
   car_.advance(acting(), manual_.is_on());
   frame_.completed_lap = car_.account.completed_lap();
 }
@@ -151,23 +142,19 @@ bool ClosedLoop::set_fault(std::string_view name, bool on) noexcept {
   return fault.has_value();
 }
 
-/// Begins and ends faults; the plant feels them from this step on.
-void ClosedLoop::watch_faults() noexcept {
+void ClosedLoop::update_faults() noexcept {
   faults_.update(time());
   car_.plant->disturb({.grip = faults_.grip(), .side_acceleration = faults_.side_acceleration()});
 }
 
-/// Command that the actuators execute now: the newest that has arrived; after a command timeout, the
-/// receiver's own braking.
 model::Command ClosedLoop::acting() noexcept {
   const double late = faults_.extra_delay(scenario_.latency);
-  const model::Command& arrived = car_.in_flight.at(time() + 1e-9 - late);  // 1e-9 s: rounding
+  const model::Command& arrived = car_.in_flight.at(time() + 1e-9 - late);  // 1e-9 s: rounding of sums
   model::Command command = faults_.done(car_.receiver.guard(arrived, time() - late, car_.speed()));
   if (interceptor_.actuated) interceptor_.actuated(time(), command);
   return command;
 }
 
-/// Measurement that the controller gets now, faults included.
 model::Measurement ClosedLoop::measure() noexcept {
   model::Measurement now = faults_.seen(car_.sense(scenario_.waypoints_sent));
   if (interceptor_.measured) interceptor_.measured(now);
@@ -182,32 +169,32 @@ const model::Measurement& ClosedLoop::look() noexcept {
   return *seen_;
 }
 
-/// Measurement for the control step that is due: kept by look(), or taken now.
 model::Measurement ClosedLoop::take_measurement() noexcept {
   if (seen_) return *std::exchange(seen_, std::nullopt);
   faults_.update(time());
   return measure();
 }
 
-void ClosedLoop::control(double budget, const GivenStep* given, const model::Command* sent) noexcept {
+void ClosedLoop::control(const StepTerms& terms) noexcept {
   frame_.measurement = take_measurement();
   CycleInput input{.deadline_spent_at = faults_.deadline_questions(), .interval = scenario_.control_period};
-  if (given != nullptr) {
-    frame_.measurement.delay = given->delay;
-    input.deadline_spent_at = given->deadline_spent_at;
+  if (terms.given != nullptr) {
+    frame_.measurement.delay = terms.given->delay;
+    input.deadline_spent_at = terms.given->deadline_spent_at;
   }
   if (manual_.is_on()) input.manual = manual_.command(frame_.measurement, scenario_.vehicle);
-  if (sent != nullptr) input.manual = *sent;
-  // The frame: state of the world, the controller's step, its command.
+  if (terms.sent != nullptr) input.manual = *terms.sent;
+
   observe(car_.world, frame_);
   frame_.pace = pace_;
   frame_.applied = acting();
   frame_.active_faults = faults_.bits();
-  if (budget > 0.0)
-    input.deadline = Deadline::after(std::chrono::nanoseconds(static_cast<long long>(budget * 1e9)));
+  if (terms.budget > 0.0)
+    input.deadline = Deadline::after(std::chrono::nanoseconds(static_cast<long long>(terms.budget * 1e9)));
   cycle_.step(input, frame_);
-  if (budget > 0.0) step_time_ += 0.1 * (std::min(frame_.step_time, budget) - step_time_);
-  // Send the command, with its random delay.
+  constexpr double kNewest = 0.1;  // weight of the newest duration in the smoothed one; chosen
+  if (terms.budget > 0.0) step_time_ += kNewest * (std::min(frame_.step_time, terms.budget) - step_time_);
+
   if (faults_.is_delivered()) {
     configured_act_time_ = frame_.measurement.time + frame_.measurement.delay;
     const double act_time =
@@ -221,7 +208,7 @@ void ClosedLoop::control(double budget, const GivenStep* given, const model::Com
 
 telemetry::RunSummary ClosedLoop::summary() const {
   telemetry::RunSummary run = car_.account.summary(time());
-  const bool is_full_size = scenario_.vehicle.scale == 1.0;  // a plan has times of a full-size car
+  const bool is_full_size = scenario_.vehicle.scale == 1.0;  // times of a plan are those of a full-size car
   if (lap_ && is_full_size) run.planned_corner_times = lap_->corner_times();
   return run;
 }

@@ -13,9 +13,10 @@ namespace chicane::run {
 
 namespace {
 
-constexpr double kRoadSpacing = 2.0;  // [m] of the road that the guard knows
-constexpr double kLateMemory = 30.0;  // [s] in which a late command is forgotten
-constexpr double kLatest = 0.75;      // [s] in full size: the guard holds no command longer
+constexpr double kRoadSpacing = 2.0;  // [m] spacing of the points of the guard's road, in full size; chosen
+constexpr double kLateMemory = 30.0;  // [s] time constant in which a long interval fades; chosen
+// Derived: PredictiveFilter holds no command longer.
+constexpr double kLatest = 0.75;  // [s] in full size, most of the interval that late commands show
 
 }  // namespace
 
@@ -57,7 +58,6 @@ void ControlCycle::configure(const scenario::Scenario& scenario) noexcept {
   if (scenario.guard.road == safety::GuardRoad::kWaypoints) guard_.forget_road();
 }
 
-/// Scales a result from full size to the actual car.
 void ControlCycle::to_scale(controller::StepResult& result) const noexcept {
   const double length = similarity_.length(), time = similarity_.time(), speed = similarity_.speed();
   controller::Plan& plan = result.plan;
@@ -80,7 +80,7 @@ void ControlCycle::to_scale(controller::StepResult& result) const noexcept {
   report.explanation.speed_limit /= speed;
 }
 
-void ControlCycle::keep_stop() noexcept {
+void ControlCycle::scale_stop() noexcept {
   const safety::StopPlan& stop = guard_.stop();
   stop_.size = stop.size;
   for (std::size_t i = 0; i < static_cast<std::size_t>(stop.size); ++i) {
@@ -113,7 +113,7 @@ void ControlCycle::step(const CycleInput& input, telemetry::Frame& frame) noexce
   } else {
     frame.asked = guard_.step(similarity_.full_size(frame.measurement), deadline, cycle, frame.result);
     to_scale(frame.result);
-    keep_stop();
+    scale_stop();
   }
   frame.guard = guard_.report();
   frame.guard.stop_edge /= similarity_.length();

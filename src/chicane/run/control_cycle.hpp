@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// One control cycle: from a measurement, through guard and controller, to the sent command and the frame.
 #pragma once
 
 #include <cstdint>
@@ -18,53 +19,55 @@
 
 namespace chicane::run {
 
-/// Road that the scenario's guard starts with; `track`: the track it may use, or null. Takes milliseconds.
+/// Road that the scenario's guard starts with. `track`: track that the guard may know; null: none. Takes
+/// milliseconds.
 [[nodiscard]] road::KnownRoad known_road(const scenario::Scenario& scenario, const road::Track* track);
 
-/// Input of a control cycle besides the measurement. Recorded in the frame: with it and the measurement a
-/// cycle is computed again bit for bit.
+/// Input of a control cycle besides the measurement. The frame records it, so that the cycle can be computed
+/// again bit for bit.
 struct CycleInput {
   Deadline deadline = Deadline::stopwatch();  ///< deadline of the controller's step
-  std::uint32_t deadline_spent_at = 0;        ///< DeadlineLog::spent_at, where it is given
+  std::uint32_t deadline_spent_at = 0;        ///< DeadlineLog::spent_at of a recorded cycle; 0: none
   double interval = 0.0;  ///< time since the last cycle [s], for the rate limit; unused in the first cycle
-  std::optional<model::Command> manual{};  ///< a person's command, sent in the controller's place
+  std::optional<model::Command> manual{};  ///< command of a person, sent in place of the controller's
 };
 
-/// The control cycle: a measurement becomes a command, and all of it a frame. The one place where that
-/// happens: `drive`, `serve`, replay, branches and programs of users all run it.
+/// The control cycle: computes a command from a measurement, and writes both, with everything between, into a
+/// frame. Shared by `drive`, `serve`, replay, branches and programs of users.
 ///
 ///     measurement → plausibility → controller → fallback → gate → what is sent → frame
 ///
-/// safety::Guard does all between measurement and gate. It gets a model car in full size (model/vehicle.hpp);
-/// frames and stops have the actual size. No allocation; one thread; objects are independent.
+/// safety::Guard does everything between measurement and gate. A model car is scaled to full size for it
+/// (model/vehicle.hpp); frames and stops have the car's own size. No allocation; one thread; objects are
+/// independent.
 class ControlCycle {
  public:
-  /// Pre: `controller` is not null. The scenario's vehicle gives the model's parameters, its guard watches.
-  /// `track`: the road, where the guard may know it; null: it is not known.
+  /// Pre: `controller` is not null. The scenario gives the vehicle and the options of the guard. `track`:
+  /// track that the guard may know; null: none.
   ControlCycle(std::unique_ptr<controller::Controller> controller, const scenario::Scenario& scenario,
                const road::Track* track);
-  /// The same with what known_road() has made of the track before.
+  /// Creates a cycle with a road that known_road() made before.
   ControlCycle(std::unique_ptr<controller::Controller> controller, const scenario::Scenario& scenario,
                road::KnownRoad road);
 
-  /// The planned lap of a scenario that races (run/racing.hpp): before the car drives, or between two cycles
-  /// where the controller wants_lap(). Null changes nothing.
+  /// Sets the planned lap of a scenario that races (run/racing.hpp), before the car drives or between two
+  /// cycles if the controller wants_lap(). Null changes nothing.
   void use_line(std::shared_ptr<const road::RacingRoad> lap);
 
-  /// A new run, or the same car after something unknown: everything learned of it is forgotten. The next
-  /// cycle has the number `cycle`. `longest`: interval that commands may be held for on this link [s].
+  /// Begins a run, or continues after an interruption: drops everything learned of the car. `cycle`: number
+  /// of the next cycle. `longest`: time for which this link may hold a command [s].
   void begin(std::uint64_t cycle = 0, double longest = 0.0) noexcept;
-  /// Applies settings before the next cycle; learned values stay. One change of the guard takes effect,
-  /// GuardRoad::kWaypoints in place of kTrack; it allocates, and so belongs before the car drives.
+  /// Applies settings before the next cycle; learned values stay. Of the guard's options only a change from
+  /// GuardRoad::kTrack to kWaypoints takes effect. That change allocates: make it before the car drives.
   void configure(const scenario::Scenario& scenario) noexcept;
 
-  /// One cycle. Reads from `frame` the measurement, and the truth where there is one; writes everything that
-  /// the cycle decides, its number and its times. The rest of the frame, place and laps, is the caller's.
+  /// One cycle. Reads measurement and truth, if known, from `frame`. Writes the cycle's decisions, number and
+  /// times. Place and laps are written by the caller.
   void step(const CycleInput& input, telemetry::Frame& frame) noexcept;
 
   /// Number of the next cycle.
   [[nodiscard]] std::uint64_t next() const noexcept { return next_; }
-  /// The longest interval lately [s].
+  /// Longest recent interval between two cycles [s]; older ones fade within half a minute.
   [[nodiscard]] double longest() const noexcept { return longest_; }
   [[nodiscard]] const controller::Controller& controller() const noexcept { return guard_.controller(); }
   /// The stop at hand after step(), for the receiver, which stops the car when commands cease.
@@ -73,16 +76,18 @@ class ControlCycle {
   }
 
  private:
+  /// Scales a result from full size to the size of the car.
   void to_scale(controller::StepResult& result) const noexcept;
-  void keep_stop() noexcept;
+  /// Scales the guard's stop plan to the size of the car, into stop_.
+  void scale_stop() noexcept;
 
-  model::Similarity similarity_;
+  model::Similarity similarity_;  ///< scale of the car to full size
   safety::Guard guard_;
-  safety::StopPlan stop_;  ///< stop plan of a model car
+  safety::StopPlan stop_;  ///< stop plan in the size of a model car; unused in full size
   telemetry::PredictionCheck prediction_check_;
-  std::uint64_t next_ = 0;
-  bool begins_ = true;
-  double longest_ = 0.0;  ///< [s]
+  std::uint64_t next_ = 0;  ///< number of the next cycle
+  bool begins_ = true;      ///< the next cycle is the first of a run
+  double longest_ = 0.0;    ///< longest recent interval, faded [s]
 };
 
 }  // namespace chicane::run

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Control cycles of an external car: time by its clock, silences, changes of road, settings and planned laps.
+// Control cycles of an external car: its clock, gaps in its measurements, its road, settings and planned
+// laps.
 #include "chicane/run/external_drive.hpp"
 
 #include <limits>
@@ -11,14 +12,16 @@
 namespace chicane::run {
 namespace {
 
-constexpr double kLateAtFirst = 0.42;  // [s] interval by another clock, until one is seen
-constexpr double kGapInDelays = 2.0;   // gap in delays, if larger than ExternalDriveOptions::forget_after
+// Assumed interval by a new clock, before one was measured; chosen [s].
+constexpr double kFirstInterval = 0.42;
+// Delays that a gap may last beyond ExternalDriveOptions::forget_after; chosen.
+constexpr double kGapInDelays = 2.0;
 
 double seconds(ExternalDrive::Clock::duration duration) {
   return std::chrono::duration<double>(duration).count();
 }
 
-/// A cycle without a measurement says only that time has passed.
+/// Measurement of a cycle in which nothing was measured: not-a-number everywhere.
 model::Measurement nothing_measured() {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   model::Measurement none;
@@ -34,7 +37,7 @@ ExternalDrive::ExternalDrive(ExternalDriveOptions options, std::unique_ptr<contr
       hooks_{hooks},
       scenario_{options_.scenario},
       cycle_{std::move(controller), options_.scenario, options_.track},
-      roadside_{options_.track, options_.scenario, options_.remedy},
+      account_{options_.track, options_.scenario, options_.remedy},
       clock_{options_.clock, options_.scenario.vehicle, Clock::now()} {
   cycle_.use_line(options_.lap);
 }
@@ -46,14 +49,12 @@ void ExternalDrive::begin() {
   begins_again_ = false;
 }
 
-void ExternalDrive::begin_anew() { begin_on_link(cycle_.longest()); }
-
 void ExternalDrive::begin_on_link(double longest) {
   clock_.pause();
   cycle_.begin(cycle_.next(), longest);
   last_received_.reset();
   last_time_.reset();
-  roadside_.resume();
+  account_.resume();
 }
 
 std::optional<double> ExternalDrive::gap(Clock::time_point received) const {
@@ -88,27 +89,26 @@ const telemetry::Frame& ExternalDrive::step(const Sighting& sighting) {
 void ExternalDrive::finish() {
   frame_.lateral_error = frame_.result.report.lateral_error;
   frame_.heading_error = frame_.result.report.heading_error;
-  roadside_.judge(frame_);
-  if (const auto lap = roadside_.take_lap(); lap && hooks_.on_lap) hooks_.on_lap(*lap);
+  account_.judge(frame_);
+  if (const auto lap = account_.take_lap(); lap && hooks_.on_lap) hooks_.on_lap(*lap);
   if (hooks_.on_frame) hooks_.on_frame(frame_);
   const road::Track* track = is_other_road_ ? nullptr : options_.track;
   const auto planned = planner_.advance(cycle_, scenario_, track, frame_.time);
   if (planned && hooks_.on_change) hooks_.on_change(*planned);
 }
 
-/// Forgets all after a gap, our own silences included: whether the car was stopped or continued with the last
-/// command is unknown. The first telemetry may have waited as long, so that the second resets as well.
+// After a gap it is unknown whether the car stopped or continued with the last command. The first measurement
+// after a gap may have waited as long, so that the second restarts the cycle as well.
 void ExternalDrive::watch_gap(double gap, double delay) {
   const bool is_long = gap > seconds(options_.forget_after) + kGapInDelays * delay;
   if (is_long || begins_again_) begin_anew();
   begins_again_ = is_long;
 }
 
-/// Counts time. True: by another clock, so that the plan is invalid.
 bool ExternalDrive::count_time(const Sighting& sighting) {
   const model::Measurement* measured = sighting.measured ? &*sighting.measured : nullptr;
   const bool is_another = clock_.advance(sighting.received, measured, std::exchange(acting_, last_sent_));
-  if (is_another) begin_on_link(clock_.delay(kLateAtFirst));
+  if (is_another) begin_on_link(clock_.delay(kFirstInterval));
   has_clock_news_ |= is_another;
   if (has_clock_news_ && clock_.is_settled()) {
     has_clock_news_ = false;
@@ -117,7 +117,6 @@ bool ExternalDrive::count_time(const Sighting& sighting) {
   return is_another;
 }
 
-/// Drops a configured track that does not match the visible waypoints.
 void ExternalDrive::check_road(const Sighting& sighting) {
   if (options_.track == nullptr || is_other_road_ || !sighting.measured) return;
   const auto distance = distance_to_other_road(*options_.track, *sighting.measured);
@@ -127,7 +126,7 @@ void ExternalDrive::check_road(const Sighting& sighting) {
       .cycle = cycle_.next(), .time = time(sighting.received), .name = "guard.road", .value = "waypoints"};
   scenario_.guard.road = safety::GuardRoad::kWaypoints;
   cycle_.configure(scenario_);
-  roadside_.forget_track();
+  account_.forget_track();
   if (hooks_.on_change) hooks_.on_change(change);
   if (hooks_.on_other_road) hooks_.on_other_road(*distance);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Trials of faults in a flying lap: the lap is driven once, and each trial goes on from a copy of the run.
+// Trials of faults in a flying lap: the lap is driven once, and each trial continues a copy of the run.
 #include "chicane/run/fault_campaign.hpp"
 
 #include <fmt/format.h>
@@ -17,22 +17,23 @@
 namespace chicane::run {
 namespace {
 
-constexpr double kStood = 1.0;         // [s] at standstill after which a car has come to rest
-constexpr double kTimeToGetGoing = 5;  // [s] for a car that the fault has stopped
-constexpr double kRounding = 1e-9;     // [s] sums of step lengths round
-constexpr double kLongestLaps = 1800;  // [s] for the two laps without a fault; longer ones are not waited for
+// Chosen, except for kRounding.
+constexpr double kStood = 1.0;         // [s] time at standstill after which a car has come to rest
+constexpr double kTimeToGetGoing = 5;  // [s] least trial: time for a stopped car to drive on by itself
+constexpr double kRounding = 1e-9;     // [s] rounding of a time that is a sum of step lengths
+constexpr double kLongestLaps = 1800;  // [s] longest time for the two laps without a fault
 
 /// Time at which a trial's faults begin, in whole milliseconds of the run: short in `--fault NAME@at`.
 double onset_of(const FlyingLap& lap, const FaultTrial& trial) {
   return std::round(1e3 * (lap.begins + trial.onset)) / 1e3;
 }
 
-/// Drives until the next step is the first with a fault in it.
+/// Drives up to the time `at` [s]: the next step is the first with a fault.
 void drive_up_to(RunSteps& steps, double at) {
   while (steps.loop().time() < at - kRounding && !steps.loop().is_over()) steps.advance();
 }
 
-/// Drives from the faults to the trial's end.
+/// Switches the faults of a trial on at the time `at` [s], and drives to its end.
 FaultOutcome drive_on(RunSteps& steps, const FaultTrial& trial, double at) {
   ClosedLoop& loop = steps.loop();
   FaultOutcome outcome{.trial = trial, .at = at};

@@ -18,12 +18,12 @@
 namespace chicane::run {
 namespace {
 
-// The course stands in docs/measured/racing.md, "The severe double lane change"; other numbers were chosen.
+// Numbers of the course: docs/measured/racing.md, "The severe double lane change". All others are chosen.
 constexpr double kGap = 1.0;        // [m] between entry and side lane, by the standard
-constexpr double kIntoEntry = 3.0;  // [m] end of the entry lane in which way() turns already
-constexpr double kIntoSide = 5.0;   // [m] both ends of the side lane in which way() still turns
-constexpr double kIntoExit = 4.0;   // [m] beginning of the exit lane in which way() still turns
-constexpr double kBeside = 6.0;     // [m] width of the road beside the line where there are no cones
+constexpr double kIntoEntry = 3.0;  // [m] length of the entry lane's end in which way() already turns
+constexpr double kIntoSide = 5.0;   // [m] length of each end of the side lane in which way() turns
+constexpr double kIntoExit = 4.0;   // [m] length of the exit lane's beginning in which way() still turns
+constexpr double kBeside = 6.0;     // [m] width of the road to each side of the line where there are no cones
 constexpr double kReach = 1.0;  // [m] length of a lane's edges beyond its cones: the body beyond its axles
 constexpr double kFarPoints = 20.0;  // [m] between points of the road before and behind the course
 constexpr double kEdgePoints = 0.5;  // [m] between points of the road in the course
@@ -35,22 +35,21 @@ double blend(double t) {
   return t * t * t * (10.0 + t * (6.0 * t - 15.0));
 }
 
-constexpr double kReleased = 2.0;       // [m] behind the entry: the throttle is released, by the standard
+// Distance behind the entry at which the throttle is released, by the standard [m].
+constexpr double kReleased = 2.0;
 constexpr double kWayStep = 5.0 / 3.6;  // [m/s] between speeds for which lines are planned
 constexpr double kUsedRoom = 0.2;   // share of the space beside the body in the entry lane that the line uses
-constexpr double kPlanStep = 0.04;  // [s] between nodes of a plan, about
+constexpr double kPlanStep = 0.04;  // [s] mean time between nodes of a plan
 constexpr double kStopping = 10.0;  // [m/s²] braking at the end of the road, which no car reaches
 constexpr double kShown = 6.0;      // [m] width of the road beside the waypoints
 constexpr double kWaypoints = 3.0;  // [m] between waypoints in the course
 constexpr double kFarWaypoints = 20.0;  // [m] between waypoints before and behind the course
 constexpr double kSpeedGain = 2.0;      // [1/s] acceleration over speed error before the entry
-constexpr double kNoPedal = 0.01;    // [m/s²] drive and brakes in the controller's model: it has no pedals
-constexpr double kMostTime = 60.0;   // [s] of a run
-constexpr double kHasStopped = 1.0;  // [m/s] speed that ends a run
+constexpr double kNoPedal = 0.01;    // [m/s²] largest drive and braking in the controller's model: no pedals
+constexpr double kMostTime = 60.0;   // [s] longest run
+constexpr double kHasStopped = 1.0;  // [m/s] speed below which a run has failed and ends
 
-double kmph(double speed) { return speed / 3.6; }
-
-/// Driver of the course: holds the speed, then releases the throttle. Another controller steers.
+/// Driver of the course: holds the speed, then releases the throttle. The controller under test steers.
 class ReleasesThrottle final : public controller::Controller {
  public:
   ReleasesThrottle(std::unique_ptr<Controller> driver, const model::VehicleParams& vehicle, double speed)
@@ -84,13 +83,33 @@ double margin_of(const model::VehicleParams& car) {
   return beside_tyres - kUsedRoom * beside_body;
 }
 
-/// Scenario `driven` on the course: without laps, time limit, faults and guard.
+/// Copy of `driven` for the course: without laps, time limit, faults and guard.
 scenario::Scenario on_course(const scenario::Scenario& driven) {
   scenario::Scenario scenario = endless(driven);
   scenario.guard.mode = safety::GuardMode::kOff;
   std::get<controller::TrackingMpcEntry::Options>(scenario.controllers).edge_margin =
       margin_of(scenario.vehicle);
   return scenario;
+}
+
+/// Drives through the course, and measures speeds and the room to the cones.
+LaneChangeOutcome outcome_of(ClosedLoop& loop, const LaneChangeCourse& course,
+                             const model::VehicleParams& vehicle) {
+  LaneChangeOutcome outcome;
+  const double to_middle = 0.5 * (vehicle.front_axle - vehicle.rear_axle);
+  while (loop.time() < kMostTime) {
+    (void)loop.advance();
+    const model::State& car = loop.car();
+    const double speed = hypot(car.vx, car.vy);
+    if (outcome.entry_speed == 0.0 && car.x >= 0.0) outcome.entry_speed = speed;
+    const model::Pose middle{car.x + to_middle * cos(car.psi), car.y + to_middle * sin(car.psi), car.psi};
+    outcome.room = std::min(outcome.room, course.room(middle, vehicle.length, vehicle.width));
+    if (speed < kHasStopped) break;
+    if (car.x < LaneChangeCourse::kLength + 0.5 * vehicle.length) continue;
+    outcome.exit_speed = speed;
+    break;
+  }
+  return outcome;
 }
 
 /// Waypoints of the line as telemetry shows them.
@@ -185,13 +204,13 @@ Result<road::RacingLine> LaneChange::plan(double grip_share) const {
 
 Result<LaneChange::Way> LaneChange::way_at(double speed) {
   Result<road::RacingLine> line = fail(ErrorCode::kInvalidArgument, "");
-  // Very slow speeds may have no plan: the next speed's line is taken then.
+  // The slowest speeds may have no plan: take the line of the next speed that has one.
   for (int step = static_cast<int>(std::ceil(speed / kWayStep));; ++step) {
     if (const auto known = ways_.find(step); known != ways_.end()) return known->second;
-    const double of_way = std::min(step * kWayStep, full_speed_);
-    const double share = of_way / full_speed_;
-    line = plan(share * share);
-    if (!line && of_way < full_speed_) continue;
+    const double line_speed = std::min(step * kWayStep, full_speed_);
+    const double share = line_speed / full_speed_;
+    line = plan(share * share);  // grip grows with the square of the speed
+    if (!line && line_speed < full_speed_) continue;
     if (!line) return fail(line.error());
     const road::RacingRoad::Basis basis{.is_closed = false, .braking = kStopping};
     Way way = std::make_shared<const road::RacingRoad>(road::line_points(road_, *line), 0.0, basis);
@@ -208,7 +227,7 @@ Result<LaneChangeOutcome> LaneChange::drive(const scenario::Scenario& scenario, 
   Result<road::Track> waypoints = waypoints_on((*way)->line());
   if (!waypoints) return fail(waypoints.error());
   const Roads::Prepared road{road_, std::move(*waypoints), known_road(one, &road_),
-                             races(one) ? *way : nullptr};
+                             one.races() ? *way : nullptr};
   Factories parts = make;
   parts.controller = [&](const scenario::Scenario& each) -> Result<std::unique_ptr<controller::Controller>> {
     scenario::Scenario steering = each;
@@ -217,32 +236,16 @@ Result<LaneChangeOutcome> LaneChange::drive(const scenario::Scenario& scenario, 
     if (!driver) return fail(driver.error());
     return std::make_unique<ReleasesThrottle>(std::move(*driver), each.vehicle, speed);
   };
-  auto created = ClosedLoop::create(one, road, parts);
-  if (!created) return fail(created.error());
-  ClosedLoop& loop = **created;
-  loop.restart_at({.x = -LaneChangeCourse::kStart, .vx = speed});
-
-  LaneChangeOutcome outcome;
-  const double to_middle = 0.5 * (one.vehicle.front_axle - one.vehicle.rear_axle);
-  while (loop.time() < kMostTime) {
-    (void)loop.advance();
-    const model::State& car = loop.car();
-    const double now = hypot(car.vx, car.vy);
-    if (outcome.entry_speed == 0.0 && car.x >= 0.0) outcome.entry_speed = now;
-    const model::Pose middle{car.x + to_middle * cos(car.psi), car.y + to_middle * sin(car.psi), car.psi};
-    outcome.room = std::min(outcome.room, course_.room(middle, one.vehicle.length, one.vehicle.width));
-    if (now < kHasStopped) break;
-    if (car.x < LaneChangeCourse::kLength + 0.5 * one.vehicle.length) continue;
-    outcome.exit_speed = now;
-    break;
-  }
-  return outcome;
+  auto loop = ClosedLoop::create(one, road, parts);
+  if (!loop) return fail(loop.error());
+  (*loop)->restart_at({.x = -LaneChangeCourse::kStart, .vx = speed});
+  return outcome_of(**loop, course_, one.vehicle);
 }
 
 Result<LaneChangeLimit> LaneChange::find_limit(const scenario::Scenario& scenario, const Factories& make) {
   LaneChangeLimit limit;
   for (int speed = kSlowest; speed <= kFastest; ++speed) {
-    const Result<LaneChangeOutcome> outcome = drive(scenario, kmph(speed), make);
+    const Result<LaneChangeOutcome> outcome = drive(scenario, speed / 3.6, make);
     if (!outcome) return fail(outcome.error());
     limit.failed = *outcome;
     if (!outcome->has_passed()) break;

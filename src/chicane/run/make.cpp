@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Parts of a run from its scenario: controller, plant, track, and waypoints as telemetry shows them.
 #include "chicane/run/make.hpp"
 
 #include <algorithm>
@@ -13,8 +14,29 @@
 namespace chicane::run {
 namespace {
 
-constexpr double kWaypointSpacing = 12.0;  // [m] the median of the original's waypoints
-constexpr double kFewestWaypoints = 8.0;   // least number of waypoints of a road, however short
+// Spacing in full size; measured: median of the original's waypoints [m].
+constexpr double kWaypointSpacing = 12.0;
+constexpr double kFewestWaypoints = 8.0;  // least number of waypoints on any road; chosen
+constexpr double kDenseShare = 0.6;       // share of the spacing below which points are thinned; chosen
+constexpr double kGapShare = 0.5;  // least distance from the last to the first point, in spacings; chosen
+
+/// Points of a track, at least `spacing` [m] apart; an open road keeps its last point.
+std::vector<road::TrackPoint> thinned(const std::vector<road::TrackPoint>& raw, bool is_closed,
+                                      double spacing) {
+  double length = is_closed ? (raw.front().position - raw.back().position).norm() : 0.0;
+  for (std::size_t i = 1; i < raw.size(); ++i) length += (raw[i].position - raw[i - 1].position).norm();
+  std::vector<road::TrackPoint> kept{raw.front()};
+  double along = 0.0, last = 0.0;  // distance of this point and of the last kept one [m]
+  for (std::size_t i = 1; i < raw.size(); ++i) {
+    along += (raw[i].position - raw[i - 1].position).norm();
+    const bool is_end = !is_closed && i + 1 == raw.size();
+    const bool meets_first = is_closed && length - along < kGapShare * spacing;
+    if (!is_end && (along - last < spacing || meets_first)) continue;
+    kept.push_back(raw[i]);
+    last = along;
+  }
+  return kept;
+}
 
 }  // namespace
 
@@ -42,21 +64,9 @@ Result<road::Track> make_waypoints(const road::Track& track, double scale) {
   const double spacing = std::min(kWaypointSpacing * scale, track.length() / kFewestWaypoints);
   const std::vector<road::TrackPoint>& raw = track.raw_points();
   const double mean_spacing = track.centre().length() / static_cast<double>(raw.size());
-  if (mean_spacing > 0.6 * spacing) return track;
+  if (mean_spacing > kDenseShare * spacing) return track;
   const bool is_closed = track.centre().is_closed();
-  double length = is_closed ? (raw.front().position - raw.back().position).norm() : 0.0;
-  for (std::size_t i = 1; i < raw.size(); ++i) length += (raw[i].position - raw[i - 1].position).norm();
-  std::vector<road::TrackPoint> sparse{raw.front()};
-  double along = 0.0;
-  double last = 0.0;
-  for (std::size_t i = 1; i < raw.size(); ++i) {
-    along += (raw[i].position - raw[i - 1].position).norm();
-    const bool is_end = !is_closed && i + 1 == raw.size();
-    const bool meets_first = is_closed && length - along < 0.5 * spacing;
-    if (!is_end && (along - last < spacing || meets_first)) continue;
-    sparse.push_back(raw[i]);
-    last = along;
-  }
+  std::vector<road::TrackPoint> sparse = thinned(raw, is_closed, spacing);
   // Smooth in full size: the smoothing depends on the size of a road.
   for (road::TrackPoint& point : sparse)
     point = {(1.0 / scale) * point.position, point.left / scale, point.right / scale};

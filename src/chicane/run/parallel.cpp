@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Runs on many threads, and their share in a cluster's array of jobs.
+// Runs on many threads, and the share of a process in a cluster's array of jobs.
 #include "chicane/run/parallel.hpp"
 
 #include <fmt/format.h>
@@ -34,11 +34,13 @@ int threads_for(int wanted) {
 
 namespace {
 
-constexpr std::uint64_t kMostShards = 1'000'000;
+constexpr std::uint64_t kMostShards = 1'000'000;  // chosen: more than any cluster has processes
+// Largest number in a variable; chosen: products of two fit.
+constexpr std::uint64_t kMostNumber = 1'000'000'000;
 
 using Variable = std::function<const char*(const char*)>;
 
-/// The numbers of variables that a launcher sets together; none when the first is not set.
+/// Numbers of variables that a launcher sets together; none if the first is not set.
 template <std::size_t N>
 Result<std::optional<std::array<std::uint64_t, N>>> numbers_of(const Variable& variable,
                                                                const std::array<const char*, N>& names) {
@@ -47,7 +49,7 @@ Result<std::optional<std::array<std::uint64_t, N>>> numbers_of(const Variable& v
   for (std::size_t i = 0; i < N; ++i) {
     const char* const text = variable(names[i]);
     const std::optional<std::uint64_t> number = count_in(text == nullptr ? "" : text);
-    if (!number || *number > 1'000'000'000) {
+    if (!number || *number > kMostNumber) {
       return fail(ErrorCode::kInvalidArgument,
                   fmt::format("{}: got {}, expected a number together with {}; --shard I/N says it", names[i],
                               printable(text == nullptr ? "" : text), names[0]));
@@ -57,6 +59,7 @@ Result<std::optional<std::array<std::uint64_t, N>>> numbers_of(const Variable& v
   return std::optional(numbers);
 }
 
+/// Share by the task of a Slurm array; all runs outside one.
 Result<Shard> array_shard(const Variable& variable) {
   const auto numbers =
       numbers_of<5>(variable, {"SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_COUNT", "SLURM_ARRAY_TASK_MIN",
@@ -76,6 +79,7 @@ Result<Shard> array_shard(const Variable& variable) {
   return Shard{(id - first) / step, count, "Slurm array"};
 }
 
+/// Share by the rank in MPI or a Slurm step; all runs outside one.
 Result<Shard> rank_shard(const Variable& variable) {
   struct Launcher {
     const char *rank, *size, *name;
@@ -84,7 +88,7 @@ Result<Shard> rank_shard(const Variable& variable) {
                                   Launcher{"PMI_RANK", "PMI_SIZE", "MPI"},
                                   Launcher{"SLURM_PROCID", "SLURM_STEP_NUM_TASKS", "Slurm step"}};
   for (const Launcher& each : kLaunchers) {
-    // A batch script of Slurm has a SLURM_PROCID of its own, without a step that has tasks.
+    // A batch script of Slurm has a SLURM_PROCID without being a task of a step.
     if (variable(each.size) == nullptr) continue;
     const auto numbers = numbers_of<2>(variable, {each.rank, each.size});
     if (!numbers) return fail(numbers.error());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Cache of plans and limits: their names by hash, their bytes, the searches that fill it, and its files with
-// names, checksums, and removal of the oldest.
+// Cache of plans and limits: names by hash, results as bytes, searches that fill the cache, and its files
+// with checksums and removal of the oldest.
 #include "chicane/run/plan_cache.hpp"
 
 #include <fcntl.h>
@@ -41,12 +41,13 @@ std::shared_ptr<const DiskCache> cache_in_use() {
 }
 
 /// Name of a result in the cache: 128 bits as hexadecimal digits, by two hashes with different starts over
-/// all that the result depends on. Empty if the build has no id, because other builds may compute another
+/// all inputs of the result. Empty in a build without an id, because another build may compute another
 /// result.
 class Name {
  public:
   explicit Name(std::string_view kind) {
-    second_.add(std::uint64_t{0x9e3779b97f4a7c15ULL});
+    second_.add(
+        std::uint64_t{0x9e3779b97f4a7c15ULL});  // arbitrary, so that the hashes differ: 2^64 / golden ratio
     add(kind);
     const std::string ids = protocol::build_ids();
     add(std::string_view(ids));
@@ -55,6 +56,9 @@ class Name {
   void add(double value) {
     first_.add(value);
     second_.add(value);
+  }
+  void add(std::initializer_list<double> values) {
+    for (const double value : values) add(value);
   }
   void add(std::string_view text) {
     add(static_cast<double>(text.size()));
@@ -70,22 +74,19 @@ class Name {
   }
   /// Adds a road: its smoothed line and widths, on which a search depends, follow from these points alone.
   void add(const road::Track& track) {
-    constexpr double kSpacing = 1.0;  // [m]
+    constexpr double kSpacing = 1.0;  // [m] of the points of the line that enter the name; chosen
     add(std::string_view(track.name()));
     add(track.centre().is_closed() ? 1.0 : 0.0);
-    for (const double value : {track.length(), track.kerb_width(), track.start_s(), track.start_d(),
-                               track.lap_length(), static_cast<double>(track.crossings())})
-      add(value);
-    for (const road::TrackPoint& p : track.raw_points()) {
-      for (const double value : {p.position.x(), p.position.y(), p.left, p.right}) add(value);
-    }
+    add({track.length(), track.kerb_width(), track.start_s(), track.start_d(), track.lap_length(),
+         static_cast<double>(track.crossings())});
+    for (const road::TrackPoint& p : track.raw_points())
+      add({p.position.x(), p.position.y(), p.left, p.right});
     const auto count = static_cast<int>(std::ceil(track.length() / kSpacing));
     for (int i = 0; i <= count; ++i) {
       const double s = track.length() * i / count;
       const road::PathPoint at = track.centre().at(s);
-      for (const double value : {at.position.x(), at.position.y(), at.heading, at.curvature,
-                                 track.left_width(s), track.right_width(s)})
-        add(value);
+      add({at.position.x(), at.position.y(), at.heading, at.curvature, track.left_width(s),
+           track.right_width(s)});
     }
   }
   [[nodiscard]] std::string text() const {
@@ -102,6 +103,7 @@ class Name {
   bool has_build_ = false;
 };
 
+/// Fields of a point of a line, in their order in the cache.
 constexpr std::array kFields{&road::RacingLinePoint::s,
                              &road::RacingLinePoint::time,
                              &road::RacingLinePoint::offset,
@@ -115,13 +117,17 @@ constexpr std::array kFields{&road::RacingLinePoint::s,
                              &road::RacingLinePoint::throttle};
 static_assert(sizeof(road::RacingLinePoint) == kFields.size() * sizeof(double), "a field is missing here");
 
+constexpr std::size_t kMostPoints = 1'000'000;  // limit of a line's points in the cache; chosen
+
+/// Reads or writes a line, field by field.
 void line_fields(auto& archive, auto& line) {
   archive(line.car, line.track, line.length, line.margin, line.is_best_so_far);
-  archive.list(line.points, sizeof(road::RacingLinePoint), 1'000'000, [&](auto& point) {
+  archive.list(line.points, sizeof(road::RacingLinePoint), kMostPoints, [&](auto& point) {
     for (const auto field : kFields) archive(point.*field);
   });
 }
 
+/// Reads or writes a limit, field by field.
 void limit_fields(auto& archive, auto& limit) {
   archive(limit.bound.lap);
   for (auto& sector : limit.bound.sectors) archive(sector);
@@ -145,8 +151,8 @@ std::optional<T> kept(const DiskCache* cache, const std::string& name, const Rea
   return known;
 }
 
-/// Limit in the cache whose search no budget ended. Looks under two names, because a limit with a witness
-/// answers a request without one, too.
+/// Cached limit whose search was not cut short. Looks under two names, because a limit with a witness answers
+/// a request without one, too.
 std::optional<lap_time::PlantLimit> whole_limit(const road::Track& track, std::string_view plant,
                                                 const sim::PlantDeviation& deviation,
                                                 lap_time::PlantLimitOptions options,
@@ -191,10 +197,8 @@ std::string name_of_plan(const road::Track& track, const model::VehicleParams& c
   name.add(model::vehicle_options(), &car);
   name.add(std::string_view(car.name));
   name.add(car.scale);
-  for (const double value :
-       {options.margin, options.grip_share, options.slip_share, options.brake_share, options.speed_limit,
-        options.time_step, options.budget, options.slides ? options.delay : 0.0})
-    name.add(value);
+  name.add({options.margin, options.grip_share, options.slip_share, options.brake_share, options.speed_limit,
+            options.time_step, options.budget, options.slides ? options.delay : 0.0});
   return name.text();
 }
 
@@ -205,10 +209,8 @@ std::string name_of_limit(const road::Track& track, std::string_view plant,
   name.add(track);
   name.add(plant);
   name.add(sim::double_track_options(), &params);
-  for (const double value :
-       {deviation.friction_scale, deviation.mass_scale, options.time_step, options.wants_witness ? 1.0 : 0.0,
-        static_cast<double>(options.laps), options.budget})
-    name.add(value);
+  name.add({deviation.friction_scale, deviation.mass_scale, options.time_step,
+            options.wants_witness ? 1.0 : 0.0, static_cast<double>(options.laps), options.budget});
   return name.text();
 }
 
@@ -306,11 +308,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kMagic = "chicane cache 1\n";  // 1: version of the layout
+constexpr std::string_view kMagic = "chicane cache 1\n";  // first bytes of a file; 1: version of the layout
 constexpr std::string_view kExtension = ".cache";
-constexpr std::string_view kUnfinished = ".part";  // suffix of base/file.hpp
-constexpr std::size_t kHeader = kMagic.size() + 2 * sizeof(std::uint64_t);
-constexpr auto kAbandoned = std::chrono::hours(1);  // age of an unfinished file that a killed process left
+constexpr std::string_view kUnfinished = ".part";  // suffix by base/file.hpp of a file that is being written
+constexpr std::size_t kHeader = kMagic.size() + 2 * sizeof(std::uint64_t);  // magic, length, checksum [byte]
+constexpr auto kAbandoned = std::chrono::hours(1);  // age from which an unfinished file is removed; chosen
 
 std::uint64_t checksum(std::string_view bytes) {
   Fnv hash;
@@ -333,6 +335,7 @@ std::uint64_t number_at(std::string_view bytes, std::size_t at) {
   return value;
 }
 
+/// Whether length and checksum in a file's header fit its content.
 bool is_whole(std::string_view file) {
   return file.size() >= kHeader && file.starts_with(kMagic) &&
          number_at(file, kMagic.size()) == file.size() - kHeader &&
@@ -363,7 +366,7 @@ std::optional<std::string> DiskCache::find(std::string_view name) const {
     report_damage(name);
     return {};
   }
-  ::utimensat(AT_FDCWD, path.c_str(), nullptr, 0);  // used now
+  ::utimensat(AT_FDCWD, path.c_str(), nullptr, 0);  // marks the file as used now
   file.erase(0, kHeader);
   return file;
 }
@@ -392,7 +395,7 @@ void DiskCache::make_room() const {
   std::vector<File> files;
   std::uint64_t all = 0;
   std::error_code error;
-  // Other processes may remove files meanwhile: files that are gone are skipped.
+  // Other processes may remove files meanwhile: skip missing ones.
   for (fs::directory_iterator at(folder_, error), end; !error && at != end; at.increment(error)) {
     std::error_code gone;
     const fs::path& path = at->path();

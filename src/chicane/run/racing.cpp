@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Laps to race by: the plan that a controller wants for a scenario's road, from the cache or a search, and
-// the thread that plans during a run.
+// Laps to race by: plans for a scenario's road from the cache or a search, the planner during a run, and the
+// runs without one cause of lost time each.
 #include "chicane/run/racing.hpp"
 
 #include <algorithm>
@@ -23,32 +23,27 @@
 namespace chicane::run {
 namespace {
 
-constexpr double kModelRoad = 2.5;      // [m] a narrower road may belong to a model car; chosen
+constexpr double kModelRoad = 2.5;      // [m] width below which a road may belong to a model car; chosen
 constexpr double kShareAtTheEnd = 0.9;  // share of the plan's braking at the end of an open road; chosen
 
 const controller::TrackingMpcOptions& options_of(const scenario::Scenario& scenario) {
   return std::get<controller::TrackingMpcEntry::Options>(scenario.controllers);
 }
 
-/// Time from a measurement until the next command acts, for the car in full size [s]; at least
-/// SlidingBound::kAssumedDelay.
-double delay_of(const scenario::Scenario& scenario) {
-  return std::max((scenario.latency + scenario.control_period) * model::Similarity(scenario.vehicle).time(),
-                  model::SlidingBound::kAssumedDelay);
-}
-
-Result<std::shared_ptr<const road::RacingRoad>> plan_on(const road::Track& track,
-                                                        const scenario::Scenario& scenario,
-                                                        const road::RacingRoad::Basis& basis,
-                                                        const std::function<bool()>& go_on,
-                                                        const PlanHooks& hooks) {
+/// Plans a lap on a road in full size, with the grip and slip of `basis.terms`. Null if none was found.
+Result<PlannedLap> plan_on(const road::Track& track, const scenario::Scenario& scenario,
+                           const road::RacingRoad::Basis& basis, const std::function<bool()>& go_on,
+                           const PlanHooks& hooks) {
   const controller::TrackingMpcOptions& options = options_of(scenario);
+  // Time from a measurement until the next command acts, in full size [s].
+  const double delay =
+      (scenario.latency + scenario.control_period) * model::Similarity(scenario.vehicle).time();
   lap_time::RacingPlanOptions planning{.margin = options.edge_margin,
                                        .grip_share = options.grip_share,
                                        .slip_share = basis.terms.slip * options.slip_share,
                                        .brake_share = options.brake_share,
                                        .slides = basis.terms.slides,
-                                       .delay = delay_of(scenario),
+                                       .delay = std::max(delay, model::SlidingBound::kAssumedDelay),
                                        .speed_limit = options.speed_limit,
                                        .budget = options.plan_budget};
   planning.go_on = [&](int, double) { return !must_stop_planning() && (!go_on || go_on()); };
@@ -58,7 +53,7 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_on(const road::Track& track
   if (!lap && lap.error().code != ErrorCode::kNotFound) return fail(lap.error());
   if (!lap) {
     if (hooks.say) hooks.say("plan: none found (" + lap.error().message + "): driving without one");
-    return std::shared_ptr<const road::RacingRoad>{};
+    return PlannedLap{};
   }
   if (lap->is_best_so_far && hooks.say)
     hooks.say("plan: the best so far, no optimum: tracking_mpc.plan_budget_s ended the search after " +
@@ -91,20 +86,17 @@ road::Track in_full_size(const road::Track& track, const scenario::Scenario& sce
 
 }  // namespace
 
-bool races(const scenario::Scenario& scenario) noexcept { return scenario.races(); }
-
 double plan_budget(const scenario::Scenario& scenario) noexcept { return options_of(scenario).plan_budget; }
 
 Result<void> check_room(const scenario::Scenario& scenario, const road::Track& track) {
   const bool keeps_to_the_middle =
-      scenario.controller == controller::TrackingMpcEntry::kName && !races(scenario);
+      scenario.controller == controller::TrackingMpcEntry::kName && !scenario.races();
   const double beside =
       keeps_to_the_middle ? options_of(scenario).assumed_half_width : std::numeric_limits<double>::infinity();
   const road::Track road = in_full_size(track, scenario);
   const model::VehicleParams car = full_size(scenario);
-  // The cache keeps the result for racing scenarios only, whose start is to take no longer than reading a
-  // plan.
-  const Result<void> fits = races(scenario)
+  // Cache the result for racing scenarios only: with a cached plan their start takes milliseconds.
+  const Result<void> fits = scenario.races()
                                 ? cached_room(road, car, beside, scenario.vehicle.scale)
                                 : lap_time::can_be_driven(road, car, beside, scenario.vehicle.scale);
   if (fits) return {};
@@ -112,24 +104,23 @@ Result<void> check_room(const scenario::Scenario& scenario, const road::Track& t
                                      ": " + fits.error().message + size_remedy(scenario, track));
 }
 
-Result<std::shared_ptr<const road::RacingRoad>> plan_lap(const scenario::Scenario& scenario,
-                                                         const road::Track* track, const PlanHooks& hooks) {
+Result<PlannedLap> plan_lap(const scenario::Scenario& scenario, const road::Track* track,
+                            const PlanHooks& hooks) {
   const bool is_known = track != nullptr && scenario.guard.road == safety::GuardRoad::kTrack;
-  if (!races(scenario) || !is_known) return std::shared_ptr<const road::RacingRoad>{};
+  if (!scenario.races() || !is_known) return PlannedLap{};
   return plan_on(in_full_size(*track, scenario), scenario,
                  {.terms = {.grip = options_of(scenario).first_grip()}}, {}, hooks);
 }
 
-Result<std::shared_ptr<const road::RacingRoad>> plan_wanted_lap(const scenario::Scenario& scenario,
-                                                                const road::Track* track,
-                                                                const controller::LapRequest& request,
-                                                                const std::function<bool()>& go_on) {
+Result<PlannedLap> plan_wanted_lap(const scenario::Scenario& scenario, const road::Track* track,
+                                   const controller::LapRequest& request,
+                                   const std::function<bool()>& go_on) {
   const road::RacingRoad::Basis basis{.is_learned = !request.waypoints.empty(), .terms = request.terms};
-  if (!basis.is_learned && track == nullptr) return std::shared_ptr<const road::RacingRoad>{};
+  if (!basis.is_learned && track == nullptr) return PlannedLap{};
   if (!basis.is_learned) return plan_on(in_full_size(*track, scenario), scenario, basis, go_on, {});
   const model::VehicleParams car = full_size(scenario);
   const double beside = 0.5 * (car.track_width + car.tire_width);
-  // The plan uses no more road than the guard allows.
+  // Plan within the road that the guard allows.
   const bool is_guarded = scenario.guard.mode == safety::GuardMode::kOn;
   const double granted = is_guarded ? scenario.guard.half_width : std::numeric_limits<double>::infinity();
   const double half_width = std::min(options_of(scenario).assumed_half_width + beside, granted);
@@ -149,9 +140,8 @@ telemetry::Change LapPlanner::lap_change(const road::RacingRoad& lap, std::uint6
   return {.cycle = cycle, .time = time, .name = kChange, .value = value};
 }
 
-std::shared_ptr<const road::RacingRoad> LapPlanner::follow(const controller::Controller& controller,
-                                                           const scenario::Scenario& scenario,
-                                                           const road::Track* track, double time) {
+PlannedLap LapPlanner::follow(const controller::Controller& controller, const scenario::Scenario& scenario,
+                              const road::Track* track, double time) {
   const controller::LapRequest request = controller.wants_lap();
   if (!request.is_wanted) {
     if (wanted_since_ && search_) search_->cancel();
@@ -168,7 +158,8 @@ std::shared_ptr<const road::RacingRoad> LapPlanner::follow(const controller::Con
   if (has_answered_) return {};
   if (!ready_since_) {
     if (clock_ == Clock::kVirtual && time - *wanted_since_ < kPlanningTime) return {};
-    std::optional<Lap> lap = clock_ == Clock::kReal ? search_->take() : planned(scenario, track, request, {});
+    std::optional<PlannedLap> lap =
+        clock_ == Clock::kReal ? search_->take() : planned(scenario, track, request, {});
     if (!lap) return {};
     lap_ = std::move(*lap);
     ready_since_ = time;
@@ -194,7 +185,6 @@ std::optional<telemetry::Change> LapPlanner::advance(ControlCycle& cycle, const 
   return lap_change(*lap, cycle.next(), time);
 }
 
-/// Begins the search of the thread, with copies of scenario and waypoints.
 void LapPlanner::begin(const scenario::Scenario& scenario, const road::Track* track,
                        const controller::LapRequest& request) {
   if (!search_)
@@ -205,11 +195,11 @@ void LapPlanner::begin(const scenario::Scenario& scenario, const road::Track* tr
   search_->begin({scenario, track, request, {request.waypoints.begin(), request.waypoints.end()}});
 }
 
-LapPlanner::Lap LapPlanner::planned(const scenario::Scenario& scenario, const road::Track* track,
-                                    const controller::LapRequest& request,
-                                    const std::function<bool()>& is_wanted) {
-  Result<Lap> lap = plan_wanted_lap(scenario, track, request, is_wanted);
-  return lap ? std::move(*lap) : Lap{};
+PlannedLap LapPlanner::planned(const scenario::Scenario& scenario, const road::Track* track,
+                               const controller::LapRequest& request,
+                               const std::function<bool()>& is_wanted) {
+  Result<PlannedLap> lap = plan_wanted_lap(scenario, track, request, is_wanted);
+  return lap ? std::move(*lap) : PlannedLap{};
 }
 
 namespace {
@@ -222,7 +212,7 @@ controller::TrackingMpcOptions* tracking_options(Scenario& scenario) {
   return &std::get<Entry::Options>(scenario.controllers);
 }
 
-// Each function removes one cause, and returns whether the scenario had it.
+// Each function removes one cause of lost time, and returns whether the scenario had that cause.
 
 bool drop_latency(Scenario& scenario) {
   const bool has = scenario.latency > 0.0 || scenario.latency_jitter > 0.0;
@@ -239,7 +229,7 @@ bool drop_sensor_errors(Scenario& scenario) {
 bool drop_edge_margin(Scenario& scenario) {
   controller::TrackingMpcOptions* options = tracking_options(scenario);
   if (options == nullptr || !scenario.races()) return false;
-  // The guard's own margin would stop the car: let it observe only.
+  // The guard would stop a car within its own margin: let the guard observe only.
   if (scenario.guard.mode == safety::GuardMode::kOn) scenario.guard.mode = safety::GuardMode::kObserve;
   return std::exchange(options->edge_margin, 0.0) > 0.0;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Roads shared by many runs: finds a remembered one that fits a scenario, or makes it.
+// Roads shared by many runs: finds a remembered road that fits a scenario, or makes one.
 #include "chicane/run/roads.hpp"
 
 #include <algorithm>
@@ -24,34 +24,37 @@ std::optional<double> distance_to_other_road(const road::Track& track,
 
 namespace {
 
+/// Whether two structs have equal values in all rows of their table.
 bool are_same(std::span<const Option> options, const void* a, const void* b) {
   return std::all_of(options.begin(), options.end(),
                      [&](const Option& option) { return option.read(a) == option.read(b); });
 }
 
-bool plan_same_lap(const scenario::Scenario& a, const scenario::Scenario& b) {
+bool have_same_tracking(const scenario::Scenario& a, const scenario::Scenario& b) {
   using Entry = controller::TrackingMpcEntry;
-  if (!races(a) && !races(b)) return true;
-  return races(a) && races(b) &&
-         are_same(Entry::options(), &std::get<Entry::Options>(a.controllers),
+  return are_same(Entry::options(), &std::get<Entry::Options>(a.controllers),
                   &std::get<Entry::Options>(b.controllers));
 }
 
-/// Whether both scenarios have the same road.
+/// Whether both scenarios plan the same lap, or none.
+bool plan_same_lap(const scenario::Scenario& a, const scenario::Scenario& b) {
+  if (!a.races() && !b.races()) return true;
+  return a.races() && b.races() && have_same_tracking(a, b);
+}
+
+/// Whether both scenarios have the same Prepared road.
 bool is_same_road(const scenario::Scenario& a, const scenario::Scenario& b) {
   return a.track == b.track && a.size_of_track() == b.size_of_track() && a.vehicle.scale == b.vehicle.scale &&
          a.friction_low == b.friction_low && are_same(safety::guard_options(), &a.guard, &b.guard) &&
          plan_same_lap(a, b) &&
-         ((a.guard.mode == safety::GuardMode::kOff && !races(a)) ||
+         ((a.guard.mode == safety::GuardMode::kOff && !a.races()) ||
           are_same(model::vehicle_options(), &a.vehicle, &b.vehicle));
 }
 
-/// Whether the same car with the same controller is to get round.
+/// Whether car and controller, which decide check_room(), are the same.
 bool needs_same_room(const scenario::Scenario& a, const scenario::Scenario& b) {
-  using Entry = controller::TrackingMpcEntry;
   return a.controller == b.controller && are_same(model::vehicle_options(), &a.vehicle, &b.vehicle) &&
-         are_same(Entry::options(), &std::get<Entry::Options>(a.controllers),
-                  &std::get<Entry::Options>(b.controllers));
+         have_same_tracking(a, b);
 }
 
 }  // namespace
@@ -67,7 +70,7 @@ Result<const Roads::Prepared*> Roads::of(const scenario::Scenario& scenario, con
   if (!waypoints) return fail(waypoints.error());
   // Plan nothing for a road that the car does not fit.
   std::optional<scenario::Scenario> has_room;
-  if (races(scenario)) {
+  if (scenario.races()) {
     if (const Result<void> fits = run::check_room(scenario, *track); !fits) return fail(fits.error());
     has_room = scenario;
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Loops over a run: in virtual time, paced by the clock, or step by step on request, with changes of settings
-// and planned laps in between.
+// Loops over the steps of a run: flat out in virtual time, paced by the clock, or step by step on request,
+// with changes of settings and planned laps between the steps.
 #include "chicane/run/run_steps.hpp"
 
 #include <chrono>
@@ -70,13 +70,19 @@ bool LiveSteps::take_step() noexcept {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr double kNap = 0.004;      // [s] of run time advanced between two looks at the clock
-constexpr double kMaxBehind = 0.1;  // [s] later than this, missed time is skipped
-constexpr auto kPausePoll = std::chrono::milliseconds(10);
+// Chosen.
+constexpr double kBlock = 0.004;    // [s] run time between two looks at the clock
+constexpr double kMaxBehind = 0.1;  // [s] lateness beyond which missed time is skipped
+constexpr auto kPausePoll = std::chrono::milliseconds(10);  // period of looking for requests while paused
 
-/// Maps run time to the clock; moved when the run pauses or falls behind.
+Clock::duration clock_time(double seconds) {
+  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+}
+
+/// Pace of a run: maps run time to the clock from an anchor on, which moves when the run pauses or is late.
 class Pacer {
  public:
+  /// Sets the anchor: `run_time` [s] is now.
   void anchor(double run_time) {
     anchor_time_ = Clock::now();
     anchor_run_ = run_time;
@@ -86,10 +92,8 @@ class Pacer {
     if (pace != pace_) anchor(last_run_);
     pace_ = pace;
     last_run_ = run_time;
-    const auto due = anchor_time_ + std::chrono::duration_cast<Clock::duration>(
-                                        std::chrono::duration<double>((run_time - anchor_run_) / pace_));
-    const auto now = Clock::now();
-    if (now > due + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(kMaxBehind))) {
+    const auto due = anchor_time_ + clock_time((run_time - anchor_run_) / pace_);
+    if (Clock::now() > due + clock_time(kMaxBehind)) {
       anchor(run_time);
     } else {
       std::this_thread::sleep_until(due);
@@ -97,13 +101,13 @@ class Pacer {
   }
 
  private:
-  double pace_ = 1.0;
-  Clock::time_point anchor_time_ = Clock::now();
-  double anchor_run_ = 0.0;
-  double last_run_ = 0.0;
+  double pace_ = 1.0;                             ///< run seconds per second of the clock
+  Clock::time_point anchor_time_ = Clock::now();  ///< anchor on the clock
+  double anchor_run_ = 0.0;                       ///< anchor in run time [s]
+  double last_run_ = 0.0;                         ///< run time of the last call of wait_for() [s]
 };
 
-/// One call of run_realtime(): its run, its pace and its requests.
+/// One call of run_realtime().
 class Session {
  public:
   Session(ClosedLoop& loop, const RealtimeOptions& options, RunControls& controls, const RunHooks& hooks)
@@ -119,12 +123,12 @@ class Session {
       if (steps_.restart_if_wanted()) pacer_.anchor(loop_.time());
       if (controls_.is_paused) {
         steps_.finish_cycle();
-        // Viewers are to see where a run begins.
+        // Do the first cycle although paused: viewers see where the run begins.
         if (steps_.is_unseen() || wait_while_paused()) steps_.one_cycle();
         pacer_.anchor(loop_.time());
         continue;
       }
-      const double until = loop_.time() + kNap;
+      const double until = loop_.time() + kBlock;
       while (loop_.time() < until && !loop_.is_over() && !steps_.is_to_start_anew()) steps_.advance();
       if (loop_.is_over() && stay_at_end) {
         if (hooks_.on_over) hooks_.on_over();
@@ -135,8 +139,7 @@ class Session {
   }
 
  private:
-  /// Waits while paused for a request to continue, to stop or to step. True if one control cycle is to be
-  /// done.
+  /// Waits while paused for a request to continue, to stop or to step. True: one control cycle is requested.
   bool wait_while_paused() {
     steps_.take_up_changes();
     while (controls_.is_paused && !controls_.wants_stop && !controls_.wants_restart &&
@@ -155,6 +158,7 @@ class Session {
   Pacer pacer_;
 };
 
+/// Summary of a run that began at `start`.
 telemetry::RunSummary summary_since(Clock::time_point start, const ClosedLoop& loop) {
   telemetry::RunSummary run = loop.summary();
   run.wall_time = std::chrono::duration<double>(Clock::now() - start).count();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Settings of a run from their text, and fields of a scenario from settings.
+// Settings of a run: read from text, written to a scenario; and the commands of a person at the wheel.
 #include "chicane/run/setting.hpp"
 
 #include <algorithm>
@@ -54,20 +54,23 @@ Result<Action> read_field(std::string_view key, std::string_view text) {
   return fail(ErrorCode::kInvalidArgument, std::string(key) + ": is fixed when a run starts");
 }
 
+/// Reads the value of LapPlanner::lap_change(): "0.97, slip 0.8, slides".
+Result<Action> read_learned_lap(std::string_view key, std::string_view value) {
+  const bool slides = value.ends_with(LapPlanner::kSlides);
+  if (slides) value.remove_suffix(LapPlanner::kSlides.size());
+  const std::size_t comma = value.find(LapPlanner::kSlip);
+  const Result<double> slip =
+      comma == value.npos ? 1.0 : number_in(key, value.substr(comma + LapPlanner::kSlip.size()), 0.01, 1.0);
+  if (!slip) return fail(slip.error());
+  const Result<double> grip = number_in(key, value.substr(0, comma), 0.01, 2.0);
+  if (!grip) return fail(grip.error());
+  return LearnedLap{*grip, slides, *slip};
+}
+
 Result<Action> read_action(std::string_view key, std::string_view value) {
   if (key.starts_with("fault.")) return read_fault_switch(key, value);
   if (key.starts_with("manual.")) return read_manual(key, value);
-  if (key == LapPlanner::kChange) {
-    const bool slides = value.ends_with(LapPlanner::kSlides);
-    if (slides) value.remove_suffix(LapPlanner::kSlides.size());
-    const std::size_t comma = value.find(LapPlanner::kSlip);
-    const Result<double> slip =
-        comma == value.npos ? 1.0 : number_in(key, value.substr(comma + LapPlanner::kSlip.size()), 0.01, 1.0);
-    if (!slip) return fail(slip.error());
-    const Result<double> grip = number_in(key, value.substr(0, comma), 0.01, 2.0);
-    if (!grip) return fail(grip.error());
-    return LearnedLap{*grip, slides, *slip};
-  }
+  if (key == LapPlanner::kChange) return read_learned_lap(key, value);
   if (key != "run.pace") return read_field(key, value);
   const Result<double> pace = number_in(key, value, kSlowestPace, kFastestPace);
   if (!pace) return fail(pace.error());
@@ -100,8 +103,9 @@ void write(scenario::Scenario& scenario, const FieldValue& field) noexcept {
 
 namespace {
 
-constexpr double kGentleBraking = 0.4;  // share of the useful braking, as in controller/fallback.hpp
-constexpr double kFadeSpeed = 2.5;      // [m/s] below, braking fades and a negative pedal is the reverse gear
+constexpr double kGentleBraking = 0.4;  // share of the useful braking after a silence; chosen, as in Fallback
+// Speed below which that braking fades, and a negative throttle reverses; chosen [m/s].
+constexpr double kFadeSpeed = 2.5;
 
 }  // namespace
 

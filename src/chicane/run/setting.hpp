@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Settings that change during a run: read and checked once, then handed as plain data to the control thread.
 #pragma once
 
 #include <variant>
@@ -21,74 +22,73 @@ struct ManualSetting {
   double value = 0.0;  ///< kIsOn: 0 is off; else in [-1, 1]
 };
 
-/// A person at the wheel instead of the controller. Everything here happens in the time of the run, so a run
-/// with the same changes at the same cycles is the same run. No allocation; one thread.
+/// Person at the wheel in place of the controller. All times are the run's: equal changes at equal cycles
+/// give equal bits. No allocation; one thread.
 class ManualDrive {
  public:
-  /// Silence of all settings after which the car brakes gently [s].
+  /// Time without any input after which the car brakes gently [s]; chosen.
   static constexpr double kSilenceLimit = 1.0;
 
   void set(const ManualSetting& setting) noexcept;
   [[nodiscard]] bool is_on() const noexcept { return is_on_; }
-  /// The person's command for a measured car. The steering is a share of the lock. Full braking is the
-  /// largest useful one; near standstill a negative throttle is passed on unchanged, which reverses cars that
-  /// can.
+  /// Command of the person for a measured car. Steering is a share of the lock. A negative throttle is a
+  /// share of the largest useful braking; near standstill it is passed on unchanged, which engages the
+  /// reverse gear of cars that have one.
   [[nodiscard]] model::Command command(const model::Measurement& now,
                                        const model::VehicleParams& vehicle) noexcept;
-  /// Restarts time for a new run. The person keeps the wheel.
+  /// Restarts the time for another run. The person keeps the wheel.
   void restart() noexcept;
 
  private:
-  bool is_on_ = false;
-  double steer_ = 0.0;     ///< left positive; [-1, 1]
-  double throttle_ = 0.0;  ///< [-1, 1]
-  bool has_news_ = false;  ///< something was set since the last command
-  double last_set_ = 0.0;  ///< [s]
+  bool is_on_ = false;     ///< a person drives
+  double steer_ = 0.0;     ///< share of the lock, left positive, [-1, 1]
+  double throttle_ = 0.0;  ///< share of full throttle or braking, [-1, 1]
+  bool has_news_ = false;  ///< an input has come since the last command
+  double last_set_ = 0.0;  ///< run time of the last input [s]
 };
 
-/// Run seconds per second of the clock: the range of "run.pace".
+/// Range of "run.pace", run seconds per second of the clock; chosen.
 inline constexpr double kSlowestPace = 0.05;
 inline constexpr double kFastestPace = 20.0;
 
-/// A field of the scenario gets another value.
+/// Change of a field of the scenario.
 struct FieldValue {
-  const protocol::Parameter* row = nullptr;  ///< row of the schema; its field is no text
-  std::variant<double, bool> value;          ///< value as the field has it: SI, an enum as its number
+  const protocol::Parameter* row = nullptr;  ///< row of the schema, whose field is no text
+  std::variant<double, bool> value;          ///< value of the field: SI; an enum as its number
 };
-/// The run goes at another pace.
+/// Change of the run's pace.
 struct Pace {
   double value = 1.0;  ///< [kSlowestPace, kFastestPace]
 };
-/// A fault is switched.
+/// Switch of a fault.
 struct FaultSwitch {
-  enum class To { kOff, kOn, kAsGiven } to = To::kOff;  ///< kOn: with the kind's own duration and strength
-  sim::FaultEvent event{};  ///< fault; kAsGiven: with this duration and strength, from now on
+  enum class To { kOff, kOn, kAsGiven } to = To::kOff;  ///< kOn: with the duration and strength of its kind
+  sim::FaultEvent event{};  ///< the fault; its duration and strength count with kAsGiven only
 };
-/// The lap to race by that is planned for road and grip as the controller has learned them (LapPlanner).
+/// Terms of a planned lap to race by: grip and road as the controller has learned them (LapPlanner).
 using LearnedLap = road::LapTerms;
 
-/// Effect of a setting on a running run. std::monostate: none, because the run restarts with it.
+/// Effect of a setting on a run. std::monostate: none, because the setting needs another run.
 using Action = std::variant<std::monostate, FieldValue, Pace, ManualSetting, FaultSwitch, LearnedLap>;
 
-/// One change of a setting, made and checked once: data that is handed from thread to thread and applied.
-/// Plain; no allocation.
+/// One change of a setting, read and checked once. Plain data for handing from thread to thread.
 struct Setting {
   telemetry::Change change;  ///< change for recordings and viewers
-  Action action;
+  Action action;             ///< effect on the run
 };
 using SettingQueue = ThreadQueue<Setting>;
 using ChangeQueue = ThreadQueue<telemetry::Change>;
 
-/// Sets a field of `scenario` to `value` in the key's unit, and gives the change; its action is none where
-/// the field is a text. Fails as protocol::set() does; the scenario is not changed then. Allocates.
+/// Sets a field of `scenario` to `value` in the key's unit, and returns the setting; without an action if the
+/// field is a text. Fails as protocol::set(), without a change of the scenario. Allocates.
 [[nodiscard]] Result<Setting> set_field(scenario::Scenario& scenario, const protocol::Parameter& row,
                                         const protocol::Value& value);
-/// Reads a change that is text: a key of the schema whose value is no text, "run.pace", "manual.…" or
-/// "fault.…"; of a recording "run.racing_line", too. Fails as --set does, with the key, the value and the
+/// Reads a change given as text. Its name is a key of the schema whose value is no text, "run.pace",
+/// "manual.…" or "fault.…"; in recordings also "run.racing_line". Fails as --set does, with key, value and
 /// expectation. Allocates.
 [[nodiscard]] Result<Setting> read_setting(const telemetry::Change& change);
 
-/// Sets the field. No allocation.
+/// Sets the field of `scenario`. No allocation.
 void write(scenario::Scenario& scenario, const FieldValue& field) noexcept;
 
 }  // namespace chicane::run

@@ -91,13 +91,14 @@ void SimulatedCar::write(const model::Measurement& seen, const model::Command& a
 
 void SimulatedCar::count(telemetry::Frame& frame) noexcept {
   ++frame.cycle;
-  frame.asked = frame.result.command;                                // the other program's gate is unknown
-  frame.result.report.solve.status = solver::SolveStatus::kOptimal;  // so is its solver
+  // Gate and solver of the other program are unknown: count its answer as ungated and optimal.
+  frame.asked = frame.result.command;
+  frame.result.report.solve.status = solver::SolveStatus::kOptimal;
   account.add(frame);
 }
 
 StopNews::StopNews(const scenario::Scenario& scenario, Say say)
-    : standing_{0.1 * std::sqrt(scenario.vehicle.scale)}, say_{std::move(say)} {}
+    : standing_{kStanding * std::sqrt(scenario.vehicle.scale)}, say_{std::move(say)} {}
 
 bool StopNews::look(const SimulatedCar& car, bool is_timed_out, double speed,
                     const std::function<std::string()>& why) {

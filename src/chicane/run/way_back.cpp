@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Runs that start beside the road or out of control: random starts, and the drive of one of them.
 #include "chicane/run/way_back.hpp"
 
 #include <algorithm>
@@ -11,18 +12,37 @@
 namespace chicane::run {
 namespace {
 
-constexpr double kStandingSpeed = 0.3;  // [m/s]
+constexpr double kStandingSpeed = 0.3;  // [m/s] speed below which the car stands; chosen
 
-/// Velocity of a car that moves with `speed` in a direction `slip` to the left of where it points.
-void move(model::State& car, double speed, double slip, double yaw_rate) {
+/// Sets the motion of a car: `speed` [m/s], sideslip `slip` [rad] to the left, and yaw rate [rad/s].
+void set_motion(model::State& car, double speed, double slip, double yaw_rate) {
   car.vx = speed * cos(slip);
   car.vy = speed * sin(slip);
   car.r = yaw_rate;
 }
 
+/// Random number with magnitude in [low, high] and either sign.
 double either_sign(Random& chance, double low, double high) {
   const double value = chance.uniform(low, high);
   return chance.uniform() < 0.5 ? -value : value;
+}
+
+/// Sets a random motion of one kind.
+void set_random_motion(model::State& car, StartKind kind, Random& chance) {
+  switch (kind) {
+    case StartKind::kStanding:
+      return;
+    case StartKind::kRolling:
+      return set_motion(car, chance.uniform(2.0, 25.0), 0.0, 0.0);
+    case StartKind::kSliding:
+      return set_motion(car, chance.uniform(5.0, 25.0), chance.uniform(-kPi / 3.0, kPi / 3.0),
+                        chance.uniform(-1.0, 1.0));
+    case StartKind::kBackwards:
+      return set_motion(car, -chance.uniform(1.0, 8.0), 0.0, 0.0);
+    case StartKind::kSpun:
+      return set_motion(car, chance.uniform(5.0, 20.0), either_sign(chance, kPi / 2.0, kPi),
+                        chance.uniform(-3.0, 3.0));
+  }
 }
 
 }  // namespace
@@ -40,24 +60,7 @@ std::vector<StartPose> start_poses(const road::Track& track, int count, std::uin
     start.state.x = at.position.x() - d * sin(at.heading);
     start.state.y = at.position.y() + d * cos(at.heading);
     start.state.psi = at.heading + chance.uniform(-kPi, kPi);
-    switch (kind) {
-      case StartKind::kStanding:
-        break;
-      case StartKind::kRolling:
-        move(start.state, chance.uniform(2.0, 25.0), 0.0, 0.0);
-        break;
-      case StartKind::kSliding:
-        move(start.state, chance.uniform(5.0, 25.0), chance.uniform(-kPi / 3.0, kPi / 3.0),
-             chance.uniform(-1.0, 1.0));
-        break;
-      case StartKind::kBackwards:
-        move(start.state, -chance.uniform(1.0, 8.0), 0.0, 0.0);
-        break;
-      case StartKind::kSpun:
-        move(start.state, chance.uniform(5.0, 20.0), either_sign(chance, kPi / 2.0, kPi),
-             chance.uniform(-3.0, 3.0));
-        break;
-    }
+    set_random_motion(start.state, kind, chance);
     starts.push_back(start);
   }
   return starts;
@@ -71,7 +74,7 @@ Result<WayBackOutcome> drive_back(const scenario::Scenario& scenario, const Star
   loop.restart_at(start.state);
   WayBackOutcome outcome{.start = start};
   constexpr double kNotYet = WayBackOutcome::kNever;
-  double along_since = kNotYet;
+  double along_since = kNotYet;  // time since which the car drives along the road [s]
   const auto end = [&] {
     return outcome.lapping < kNotYet ? outcome.lapping + kWatched : WayBackOutcome::kInTime;
   };

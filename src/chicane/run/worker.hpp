@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Threads of low priority beside a run: Worker repeats one task, NewestTask answers the newest request.
 #pragma once
 
 #include <atomic>
@@ -13,17 +14,16 @@
 
 namespace chicane::run {
 
-/// A thread beside a run that does one kind of work again and again, behind everything else: control and
-/// network never wait for it.
+/// Thread of low priority that repeats one kind of work beside a run. Control and network never wait for it.
 class Worker {
  public:
   using Period = std::optional<std::chrono::milliseconds>;
 
-  /// `work` is called on the thread: after each wake(), and each `period` where there is one. Several calls
-  /// of wake() during a work lead to one more. Owners keep a Worker as their last member: its thread uses
-  /// the others.
+  /// `work` is called on the thread after each wake(), and once each `period`, if there is one. Calls of
+  /// wake() during `work` lead to one more call. Keep a Worker as the last member: its thread uses the
+  /// others.
   explicit Worker(std::function<void()> work, Period period = {});
-  /// Waits for a work under way: owners end a long one before.
+  /// Waits until a running `work` returns.
   ~Worker();
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
@@ -36,20 +36,19 @@ class Worker {
 
   std::function<void()> work_;
   Period period_;
-  std::mutex mutex_;  ///< guards all below
-  std::condition_variable changed_;
-  bool is_awake_ = false;
-  bool is_ending_ = false;
-  std::thread thread_;  // last: it starts when everything else is there
+  std::mutex mutex_;                 ///< guards all below
+  std::condition_variable changed_;  ///< notified when a flag below is set
+  bool is_awake_ = false;            ///< wake() was called since the last work
+  bool is_ending_ = false;           ///< the destructor waits for the thread
+  std::thread thread_;               ///< last member: it starts when all others are constructed
 };
 
-/// Computes the answer to the newest of several requests, on a thread of its own with low priority; callers
-/// do not wait. A newer request replaces one that waits, and cancels one that is being computed, whose answer
-/// is discarded.
+/// Computes the answer to the newest of several requests on a thread of low priority; callers do not wait. A
+/// newer request replaces a waiting one, and cancels a running one, whose answer is discarded.
 template <class Request, class Answer>
 class NewestTask {
  public:
-  /// `is_wanted`: false once this answer is discarded.
+  /// Computes an answer. `is_wanted` returns false once this answer will be discarded.
   using Compute = std::function<Answer(Request request, const std::function<bool()>& is_wanted)>;
   using OnAnswer = std::function<void(const Answer&)>;
 
@@ -70,14 +69,14 @@ class NewestTask {
     ++newest_;
     worker_.wake();
   }
-  /// Drops request and answer; `on_answer` is not called any more. Waits for a call under way at most.
+  /// Drops request and answer. `on_answer` is not called afterwards; waits at most for a running call of it.
   void cancel() {
     const std::lock_guard lock(mutex_);
     request_.reset();
     answer_.reset();
     ++newest_;
   }
-  /// The answer to the newest request, once; none while it is computed, and when there is none.
+  /// Answer to the newest request, returned once; none while it is computed, and without a request.
   [[nodiscard]] std::optional<Answer> take() {
     const std::lock_guard lock(mutex_);
     return std::exchange(answer_, std::nullopt);
@@ -89,6 +88,7 @@ class NewestTask {
   }
 
  private:
+  /// Computes the waiting request, on the worker's thread.
   void work() {
     std::unique_lock lock(mutex_);
     if (!request_) return;
@@ -105,12 +105,12 @@ class NewestTask {
 
   Compute compute_;
   OnAnswer on_answer_;
-  mutable std::mutex mutex_;  ///< guards all below
-  std::optional<Request> request_;
+  mutable std::mutex mutex_;              ///< guards all below
+  std::optional<Request> request_;        ///< request that waits for its computation
   std::atomic<std::uint64_t> newest_{0};  ///< number of the last request; read without the mutex
   std::uint64_t computed_ = 0;            ///< number of the request that is being computed; 0: none
-  std::optional<Answer> answer_;
-  Worker worker_;  // last
+  std::optional<Answer> answer_;          ///< answer that take() has not returned
+  Worker worker_;                         ///< last member: its thread uses the others
 };
 
 }  // namespace chicane::run

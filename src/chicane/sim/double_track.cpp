@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The four-wheel plant: tyre slips with relaxation, load transfer, drive, brakes and rolling, integrated in
-// parts of a step.
+// The four-wheel plant: options of its parameters, conversion from and to a controller's model, and its
+// motion (tyre slips with relaxation, load transfer, drive, brakes, rolling), integrated in parts of a step.
 #include "chicane/sim/double_track.hpp"
 
 #include <algorithm>
@@ -20,28 +20,30 @@ Vec2 in_body(const Vec2& v, double c, double s) noexcept {
   const auto turned = model::in_turned_axes(model::Planar<double>{v.x(), v.y()}, c, s);
   return {turned.x, turned.y};
 }
-/// The other way round.
+/// `v` in axes of the world, given in the axes of that body.
 Vec2 in_world(const Vec2& v, double c, double s) noexcept { return in_body(v, c, -s); }
 
-/// Parts of a step in which the stiffest wheel's slip turns by no more than a quarter of a radian: slip and
-/// speed of a wheel are an oscillator of frequency √(R² k / (J σ)), k force per slip.
+/// Number of parts of a step. Slip and speed of a wheel are an oscillator of frequency √(R² k / (J σ)), k
+/// force per slip; in one part its phase changes by kMostTurn at most.
 int parts_of(const DoubleTrackParams& p) noexcept {
-  constexpr double kMostTurn = 0.25;  // [rad]
+  constexpr double kMostTurn = 0.25;   // [rad]; chosen: explicit steps stay stable
+  constexpr double kMostParts = 50.0;  // limit of parts: bounds time; chosen
   const double load =
       0.5 * p.mass * DoubleTrackParams::kGravity * std::max(p.front_axle, p.rear_axle) / p.wheelbase();
   const double stiffness = load * p.friction * p.shape * std::max(p.stiffness_front, p.stiffness_rear);
   const double squared = p.wheel_radius * p.wheel_radius * stiffness / (p.wheel_inertia * p.relaxation_along);
-  constexpr double kMostParts = 50.0;  // limit of parts in a step
+
   return static_cast<int>(
       std::clamp(std::ceil(DoubleTrack::kStepLength * std::sqrt(squared) / kMostTurn), 1.0, kMostParts));
 }
 
 using P = DoubleTrackParams;
+// Units that only this plant has.
 constexpr Unit kNewton{"N", "_n"};
 constexpr Unit kWatt{"W", "_w"};
 constexpr Unit kPressure = unit::per("kg/m");
 
-/// The row of a field of model::CarBody, which models have, too.
+/// Option row of a field of model::CarBody, which plants share with controllers' models.
 const Option& body_row(std::string_view name) noexcept {
   const std::span<const Option> rows = model::vehicle_options();
   return *std::find_if(rows.begin(), rows.end(), [&](const Option& row) { return row.name == name; });
@@ -120,13 +122,13 @@ model::VehicleParams model_of(const DoubleTrackParams& p, model::VehicleParams b
   m.friction_coupling = 1.0;
   m.load_constant = DoubleTrackParams::kGravity;
   m.load_per_speed = 0.0;
-  // The tyres lose friction under it as under any load.
+  // Tyres lose friction under downforce as under any load.
   const double downforce = p.downforce_front + p.downforce_rear;
   m.load_quadratic = (1.0 - p.load_sensitivity) * downforce / p.mass;
   m.load_balance = downforce > 0.0 ? p.downforce_front / downforce - p.rear_axle / p.wheelbase() : 0.0;
   m.steer_helper = 0.0;
   m.helper_gap = 0.0;
-  // Inertia of the car and its wheels: a force along speeds up both.
+  // Inertia of the car and its wheels: a longitudinal force accelerates both.
   const double inertia = p.mass + 4.0 * p.wheel_inertia / (p.wheel_radius * p.wheel_radius);
   m.drive_acceleration = p.drive_force / inertia;
   m.drive_power_per_mass = p.drive_power / inertia;
@@ -251,10 +253,11 @@ model::Planar<double> DoubleTrack::tire_force(Wheel& wheel, const model::Planar<
   const double size = hypot(along, across);
   wheel.use = 0.0;
   if (size < 1e-9 || wheel.load <= 0.0) return {};
-  const double friction = params_.grip(wheel.load, wheel.static_load);
+  constexpr double kLeastFriction = 0.1;  // keeps the force positive under any load; chosen
+  const double friction = std::max(params_.grip(wheel.load, wheel.static_load), kLeastFriction);
   const double share = wheel.tire(size);
   wheel.use = size < wheel.peak_slip ? share : size / wheel.peak_slip;
-  const double force = wheel.load * std::max(friction, 0.1) * disturbance_.grip * share;
+  const double force = wheel.load * friction * disturbance_.grip * share;
   return {force * along / size, force * across / size};
 }
 
@@ -283,8 +286,10 @@ void DoubleTrack::move() noexcept {
   const Vec2 v_B = in_body(velocity_, c, s);
   const double speed = velocity_.norm();
 
+  constexpr double kLeastSpeed =
+      1.0;  // [m/s] keeps force by power finite; chosen: below it the force is the limit
   const double drive_force = std::min(std::max(pedal_, 0.0) * params_.drive_force,
-                                      params_.drive_power / std::max(std::fabs(v_B.x()), 1.0));
+                                      params_.drive_power / std::max(std::fabs(v_B.x()), kLeastSpeed));
   const double brake_force = std::max(-pedal_, 0.0) * params_.brake_force;
   const Vec2 air = -params_.drag * speed * v_B;
   const auto sum = model::wheel_forces<double>(

@@ -14,44 +14,48 @@
 #include "chicane/model/wheel_forces.hpp"
 #include "chicane/sim/plant.hpp"
 
+/// The four-wheel plant: its parameters, their conversion from and to a controller's model, and its motion.
+
 namespace chicane::sim {
 
-/// A car with four wheels on a plane, as data. The defaults are those of the plant `road-car`, an ordinary
-/// car of 1300 kg and 200 kW on summer tyres; origin of each number: docs/model.md, table 2. Other cars:
-/// data/cars/*.yaml.
+/// Parameters of a car with four wheels on a plane. The defaults are those of the plant `road-car`, an
+/// ordinary car of 1300 kg and 200 kW on summer tyres; origin of each number: docs/model.md, table 2. Other
+/// cars: data/cars/*.yaml.
 struct DoubleTrackParams : model::CarBody {
-  double load_lag = 0.06;  ///< time constant of the load transfer: the body rolls and pitches [s]
+  double load_lag = 0.06;  ///< time constant of the load transfer, as the body rolls and pitches [s]
 
   double wheel_radius = 0.31;         ///< [m]
-  double wheel_inertia = 1.2;         ///< inertia of each of four, with the rotating drive [kg m²]
+  double wheel_inertia = 1.2;         ///< inertia of each of four wheels, with the rotating drive [kg m²]
   double rolling_resistance = 0.013;  ///< torque over load · radius
   double drag = 0.39;                 ///< ½ ρ c_d A [kg/m]
   double downforce_front = 0.0;       ///< ½ ρ c_l A that presses the front axle down [kg/m]
   double downforce_rear = 0.0;        ///< ½ ρ c_l A that presses the rear axle down [kg/m]
 
-  double stiffness_front = 9.0;  ///< magic formula B of slip; front less for compliance of the steering
-  double stiffness_rear = 10.0;
-  double shape = 1.5;               ///< magic formula C
-  double relaxation_along = 0.15;   ///< relaxation length of forward slip [m]
+  double stiffness_front = 9.0;    ///< magic formula B, front; lower than rear for compliance of the steering
+  double stiffness_rear = 10.0;    ///< magic formula B, rear
+  double shape = 1.5;              ///< magic formula C
+  double relaxation_along = 0.15;  ///< relaxation length of forward slip [m]
   double relaxation_across = 0.30;  ///< relaxation length of lateral slip [m]
   double creep_speed = 3.0;         ///< slip damping fades out up to this speed [m/s]
   double creep_damping = 0.12;      ///< slip per m/s of slip speed, at standstill [s/m]
 
   double drive_force = 7300.0;   ///< force at full throttle [N]
-  double drive_power = 200.0e3;  ///< [W]
+  double drive_power = 200.0e3;  ///< largest drive force times speed [W]
   double drive_friction = 0.0;   ///< friction of motor and gears, on the driven wheels [N]
   double brake_force = 12350.0;  ///< force at throttle −1 [N]
-  double abs_slip_start = 0.10;  ///< anti-lock: brake torque falls from here ...
-  double abs_slip_end = 0.18;    ///< ... to nothing here
-  double abs_speed = 1.5;        ///< no anti-lock below [m/s]
-  double traction_slip_start = std::numeric_limits<double>::infinity();  ///< traction control: drive torque
-                                                                         ///< falls from here; infinite: none
-  double traction_slip_end = std::numeric_limits<double>::infinity();    ///< zero torque from here
+  double abs_slip_start = 0.10;  ///< forward slip at which anti-lock starts to reduce the brake torque
+  double abs_slip_end = 0.18;    ///< forward slip at which anti-lock leaves no brake torque
+  double abs_speed = 1.5;        ///< speed below which there is no anti-lock [m/s]
+  /// Forward slip at which traction control starts to reduce the drive torque; infinite: no traction control.
+  double traction_slip_start = std::numeric_limits<double>::infinity();
+  /// Forward slip at which traction control leaves no drive torque.
+  double traction_slip_end = std::numeric_limits<double>::infinity();
 
   static constexpr double kGravity = 9.81;  ///< [m/s²]
   [[nodiscard]] bool has_traction_control() const noexcept {
     return traction_slip_end < std::numeric_limits<double>::infinity();
   }
+  /// Force of a tyre over its peak force, by combined slip.
   [[nodiscard]] model::MagicFormula tire(bool is_front) const noexcept {
     return {.stiffness = is_front ? stiffness_front : stiffness_rear, .shape = shape, .peak = 1.0};
   }
@@ -59,18 +63,19 @@ struct DoubleTrackParams : model::CarBody {
   [[nodiscard]] double static_load(bool is_front) const noexcept {
     return 0.5 * mass * kGravity * (is_front ? rear_axle : front_axle) / wheelbase();
   }
-  /// Causes of load transfer between the wheels: forces along and across [N], and half the square of the
-  /// speed.
+  /// Causes of changes of the wheels' loads: load moved from the front axle to the rear one and across each
+  /// axle [N], and half the square of the speed [m²/s²].
   template <class T>
   struct LoadShift {
     T along, across, pressure;
   };
+  /// Load shift at an acceleration of the body (ax, ay) in B [m/s²].
   template <class T>
   [[nodiscard]] LoadShift<T> load_shift(const T& ax, const T& ay, const T& pressure) const {
     return {mass * height * ax / wheelbase(), mass * height * ay / (2.0 * half_track()), pressure};
   }
-  /// Load of wheel `i` of wheel_forces() [N], negative where it would lift; `rest` is its static load
-  /// (docs/model.md, eq. 16).
+  /// Load of wheel `i` of wheel_forces() [N] (docs/model.md, eq. 16); negative for a wheel that would lift.
+  /// `rest`: its static load [N].
   template <class T>
   [[nodiscard]] T wheel_load(std::size_t i, double rest, const LoadShift<T>& shift) const {
     const double share = i < 2 ? roll_share_front : 1.0 - roll_share_front;
@@ -79,14 +84,16 @@ struct DoubleTrackParams : model::CarBody {
     if (downforce == 0.0) return rest + change;
     return rest + change + shift.pressure * downforce;
   }
-  /// Peak force over load (eq. 17).
+  /// Peak force over load, for a wheel with static load `rest` [N] (eq. 17).
   template <class T>
   [[nodiscard]] T grip(const T& load, double rest) const {
     return friction * (1.0 - load_sensitivity * (load / rest - 1.0));
   }
+  /// Actuator of the road-wheel angle.
   [[nodiscard]] model::Actuator steer() const noexcept {
     return {.low = -steer_limit, .high = steer_limit, .lag = steer_lag, .rate = steer_rate_limit};
   }
+  /// Actuator of the pedal.
   [[nodiscard]] model::Actuator pedal() const noexcept {
     return {.low = -1.0, .high = 1.0, .lag = drive_lag};
   }
@@ -97,14 +104,14 @@ struct DoubleTrackParams : model::CarBody {
 /// The fields with their units and ranges, for files and messages.
 [[nodiscard]] std::span<const Option> double_track_options() noexcept;
 
-/// A controller's model of that car: its parameters, and values derived from them, such as the inertia with
-/// its wheels and the friction that its tyres lose under downforce (docs/model.md, eq. 23–27). `name`,
-/// `length` and `width` are not the plant's: they stay as in `body`.
+/// A controller's model of a plant (docs/model.md, eq. 23–27): shared parameters, and derived ones such as
+/// accelerations by the inertia with the wheels. `name`, `length` and `width`, which no plant has, stay as in
+/// `body`.
 [[nodiscard]] model::VehicleParams model_of(const DoubleTrackParams& plant, model::VehicleParams body = {});
 
-/// A plant with that model: the other way round. What no model has (wheels, relaxation, anti-lock) stays as
-/// in `like`. Pre: `car` is valid and no steering helper turns it. Where `car` brakes or drives by what no
-/// plant has, as drag in proportion to speed, the nearest plant has none of it.
+/// The plant whose model is `car`: the inverse of model_of(). Parameters that no model has (wheels,
+/// relaxation, anti-lock) stay as in `like`. Properties that no plant has, such as drag in proportion to
+/// speed, are left out. Pre: `car` is valid and has no steer helper.
 [[nodiscard]] DoubleTrackParams plant_of(const model::VehicleParams& car, DoubleTrackParams like = {});
 
 /// The plants `double-track` and `road-car`: planar with quasi-static load transfer and downforce,
@@ -117,7 +124,7 @@ class DoubleTrack final : public Plant {
   static constexpr std::string_view kName = "double-track";
   static constexpr std::string_view kMeaning =
       "four wheels that slide and lag; its car file gives the rest; 1 kHz";
-  static constexpr std::string_view kRoadCar = "road-car";  ///< the one with default parameters
+  static constexpr std::string_view kRoadCar = "road-car";  ///< name of the plant with default parameters
   static constexpr std::string_view kRoadCarMeaning =
       "an ordinary car: slides, pitches, steers with a lag; 1 kHz";
   static constexpr double kStepLength = 0.001;  ///< [s]
@@ -140,30 +147,35 @@ class DoubleTrack final : public Plant {
     double static_load = 0.0;  ///< [N]
     double load = 0.0;         ///< [N]
     double speed = 0.0;        ///< [rad/s]
-    double slip_along = 0.0;   ///< relaxed (ω R − v_x) / |v_x|
-    double slip_across = 0.0;  ///< relaxed −v_y / |v_x|
-    model::MagicFormula tire;
-    double peak_slip = 0.0;  ///< combined slip of the largest force
-    double friction = 0.0;   ///< torque of the drive train [N m]
-    double use = 0.0;        ///< used share of the grip, as PlantOutput::tire_use
+    double slip_along = 0.0;   ///< (ω R − v_x) / |v_x| after relaxation
+    double slip_across = 0.0;  ///< −v_y / |v_x| after relaxation
+    model::MagicFormula tire;  ///< force over peak force, by combined slip
+    double peak_slip = 0.0;    ///< combined slip of the largest force
+    double friction = 0.0;     ///< friction torque of the drive train [N m]
+    double use = 0.0;          ///< used share of the grip, as PlantOutput::tire_use
   };
 
+  /// Distributes weight, load transfer and downforce to the wheels.
   void load_wheels() noexcept;
+  /// Updates the slips of a wheel over a part of a step; its tyre's force [N], in the axes of the wheel like
+  /// the velocity `v` of its centre [m/s].
   [[nodiscard]] model::Planar<double> tire_force(Wheel& wheel, const model::Planar<double>& v) const noexcept;
+  /// Turns a wheel by its tyre's force [N], drive and brake torque [N m], at a speed along its plane [m/s].
   void spin(Wheel& wheel, double force, double drive, double brake, double speed_along) const noexcept;
+  /// Moves wheels and body by a part of a step.
   void move() noexcept;
 
-  DoubleTrackParams nominal_;
-  DoubleTrackParams params_;  ///< parameters of this car, which may deviate
-  model::Actuator steer_, pedal_way_;
-  int parts_ = 1;            ///< parts of a step
-  double dt_ = kStepLength;  ///< length of a part [s]
+  DoubleTrackParams nominal_;          ///< parameters before deviate()
+  DoubleTrackParams params_;           ///< parameters of this car, which may deviate
+  model::Actuator steer_, pedal_way_;  ///< actuators of wheel angle and pedal
+  int parts_ = 1;                      ///< parts of a step
+  double dt_ = kStepLength;            ///< length of a part [s]
   Disturbance disturbance_;
-  std::array<model::Axle, 2> axles_;
-  std::array<Wheel, 4> wheels_{};
-  Vec2 velocity_{};     ///< velocity in W [m/s]
-  Vec2 transfer_{};     ///< lagged acceleration that shifts load, in B [m/s²]
-  double pedal_ = 0.0;  ///< pedal after its lag
+  std::array<model::Axle, 2> axles_;  ///< front, rear
+  std::array<Wheel, 4> wheels_{};     ///< front left, front right, rear left, rear right
+  Vec2 velocity_{};                   ///< velocity in W [m/s]
+  Vec2 transfer_{};                   ///< lagged acceleration that shifts load, in B [m/s²]
+  double pedal_ = 0.0;                ///< pedal after its lag
   model::State state_;
   PlantOutput output_;
 };

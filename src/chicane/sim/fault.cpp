@@ -7,7 +7,7 @@
 namespace chicane::sim {
 namespace {
 
-/// The letters of a stream's name as one number, so that each stream is another one.
+/// Letters of a stream's name as one number, so that different names give different streams.
 std::uint64_t stream_number(std::string_view name) noexcept {
   std::uint64_t number = 0;
   for (const char letter : name) number = number << 8U | static_cast<unsigned char>(letter);
@@ -50,8 +50,17 @@ void FaultLab::for_each_on(Lab& lab, Act act) noexcept {
   }
 }
 
+template <class Act>
+void FaultLab::for_each_on_by_place(Act act) noexcept {
+  for (const FaultPlace place : {FaultPlace::kSource, FaultPlace::kValue, FaultPlace::kLink}) {
+    for_each_on(*this, [&](const FaultKind& kind, FaultMemory& memory) {
+      if (kind.place == place) act(kind, memory);
+    });
+  }
+}
+
 void FaultLab::update(double time) noexcept {
-  constexpr double kRounding = 1e-9;  // sums of step lengths round
+  constexpr double kRounding = 1e-9;  // [s] rounding of sums of step lengths
   for (std::size_t i = 0; i < active_.size(); ++i) {
     const auto fault = static_cast<Fault>(i);
     if (is_on(fault) && time >= active_[i].until - kRounding) end(fault);
@@ -92,11 +101,9 @@ void FaultLab::end(Fault fault) noexcept {
 
 model::Measurement FaultLab::seen(const model::Measurement& now) noexcept {
   model::Measurement measured = now;
-  for (const FaultPlace place : {FaultPlace::kSource, FaultPlace::kValue, FaultPlace::kLink}) {
-    for_each_on(*this, [&](const FaultKind& kind, FaultMemory& memory) {
-      if (kind.place == place && kind.measure != nullptr) kind.measure(memory, now, measured);
-    });
-  }
+  for_each_on_by_place([&](const FaultKind& kind, FaultMemory& memory) {
+    if (kind.measure != nullptr) kind.measure(memory, now, measured);
+  });
   return measured;
 }
 
@@ -110,11 +117,9 @@ bool FaultLab::is_delivered() noexcept {
 
 model::Command FaultLab::done(const model::Command& command) noexcept {
   model::Command result = command;
-  for (const FaultPlace place : {FaultPlace::kSource, FaultPlace::kValue, FaultPlace::kLink}) {
-    for_each_on(*this, [&](const FaultKind& kind, FaultMemory& memory) {
-      if (kind.place == place && kind.actuate != nullptr) kind.actuate(memory, command, result);
-    });
-  }
+  for_each_on_by_place([&](const FaultKind& kind, FaultMemory& memory) {
+    if (kind.actuate != nullptr) kind.actuate(memory, command, result);
+  });
   return result;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Table of faults: name, place, range and effect of each.
+// Table of faults: name, place, range and effect of each. Durations, strengths and ranges were chosen.
 #include <array>
 #include <limits>
 
@@ -9,7 +9,7 @@
 namespace chicane::sim {
 namespace {
 
-// Faults of the car and its road, of the computer and the way from it to the actuators, and of the sensors.
+// Faults of the car and its road.
 
 constexpr FaultKind kHalfGrip{
     .name = "half_grip",
@@ -94,6 +94,8 @@ constexpr FaultKind kThrottleStuck{
         },
 };
 
+// Faults of the computer and of the link from it to the actuators.
+
 constexpr FaultKind kSlowSolver{
     .name = "slow_solver",
     .meaning = "The deadline of each step is spent almost at once.",
@@ -133,6 +135,8 @@ constexpr FaultKind kCommandDropped{
     .stream = "loss",
     .loses_command = [](FaultMemory& memory) noexcept { return memory.random.uniform() < memory.strength; },
 };
+
+// Faults of the sensors and of the link from them to the computer.
 
 constexpr FaultKind kLinkLost{
     .name = "link_lost",
@@ -218,7 +222,7 @@ constexpr FaultKind kWaypointsMissing{
                   model::Measurement& measured) noexcept { measured.waypoint_count = 0; },
 };
 
-/// A new fault is a FaultKind and a line here. It is the last line: recordings know faults by their index.
+/// The list. A new fault is added as the last line, because recordings know faults by their index.
 // clang-format off
 constexpr std::array kKinds{
     kLinkLost,

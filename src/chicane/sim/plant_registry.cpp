@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// List of plants by name.
+// List of the plants by name, and their making with checked parameters.
 #include "chicane/sim/plant_registry.hpp"
 
 #include <array>
@@ -10,6 +10,7 @@
 namespace chicane::sim {
 namespace {
 
+/// Entry of a plant without parameters.
 template <class Car>
 constexpr PlantKind plant() {
   return {Car::kName, Car::kMeaning,
@@ -24,7 +25,7 @@ constexpr PlantKind kDoubleTrack{DoubleTrack::kName, DoubleTrack::kMeaning,
                                    return std::make_unique<DoubleTrack>(params);
                                  }};
 
-/// A new plant is a line here and its include.
+/// The list. A new plant is a line here and its include.
 constexpr std::array kPlants{
     plant<UdacityCar>(),
     kRoadCar,

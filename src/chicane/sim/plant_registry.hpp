@@ -10,25 +10,28 @@
 #include "chicane/sim/double_track.hpp"
 #include "chicane/sim/plant.hpp"
 
+/// The simulated cars by name.
+
 namespace chicane::sim {
 
-/// A simulated car that can be chosen by name.
+/// Entry of a plant that can be chosen by name.
 struct PlantKind {
-  std::string_view name;     ///< "road-car": small letters and dashes
-  std::string_view meaning;  ///< meaning for `chicane list plants`
+  std::string_view name;     ///< small letters and dashes, for example "road-car"
+  std::string_view meaning;  ///< one line for `chicane list plants`
+  /// Makes the plant; only `double-track` uses the parameters.
   std::unique_ptr<Plant> (*make)(const DoubleTrackParams&) = nullptr;
 };
 
-/// The plants that ship; files, command line and messages know these.
+/// The plants that ship, for files, command line and messages.
 [[nodiscard]] std::span<const PlantKind> plants() noexcept;
-/// Their names, in the same order.
+/// Names of plants(), in the same order.
 [[nodiscard]] std::span<const std::string_view> plant_names() noexcept;
 
 /// The fields of PlantDeviation with their ranges, for files and messages.
 [[nodiscard]] std::span<const Option> deviation_options() noexcept;
 
-/// The plant of that name; `params`: of `double-track`, no other has any. kNotFound "plant: got boat,
-/// expected one of ..." for another name, kInvalidArgument for a deviation or a parameter out of range.
+/// Makes the plant of that name; only `double-track` uses `params`. Fails with kNotFound "plant: got boat,
+/// expected one of ..." for an unknown name, kInvalidArgument for a deviation or a parameter out of range.
 [[nodiscard]] Result<std::unique_ptr<Plant>> make_plant(std::string_view name,
                                                         const PlantDeviation& deviation = {},
                                                         const DoubleTrackParams& params = {});

@@ -11,12 +11,40 @@
 namespace chicane::sim {
 namespace {
 
-constexpr std::size_t kPiece = 32;  // points of a wall in one circle
-constexpr double kInside = 0.02;    // share of the road's width: a wall so far inside crosses the road
-constexpr double kTwoPi = 2.0 * 3.14159265358979323846;
-constexpr double kMaxWallPoints = 400'000.0;  // limit of points of both walls
+constexpr std::size_t kPiece = 32;  // points of a wall in one circle; chosen
+constexpr double kInside = 0.02;  // depth inside the road at which a wall crosses it, over its width; chosen
+constexpr double kMaxWallPoints = 400'000.0;  // limit of points of both walls: bounds memory; chosen
+constexpr int kMostRoom = 255;                // largest stored size of a free square: one byte [cells]
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+/// Directions of the beams in the sensor's frame, from the right to the left.
+std::vector<Vec2> directions_of(const RangeScannerOptions& options) {
+  std::vector<Vec2> directions;
+  for (int i = 0; i < options.beams; ++i) {
+    const double angle = options.first_angle() + options.increment() * i;
+    directions.emplace_back(chicane::cos(angle), chicane::sin(angle));
+  }
+  return directions;
+}
+
+/// Range of t in which x0 + t u lies in [0, size], for one axis; begin > end if it is empty.
+struct Interval {
+  double begin = -kInfinity, end = kInfinity;
+};
+Interval inside(double x0, double u, double size) {
+  if (u == 0.0) return x0 >= 0.0 && x0 <= size ? Interval{} : Interval{kInfinity, -kInfinity};
+  const double a = -x0 / u, b = (size - x0) / u;
+  return {std::min(a, b), std::max(a, b)};
+}
+
+/// Number of the cell at a coordinate [cells], in [low, high]. Rounds down without std::floor, which is a
+/// call on processors that lack the instruction.
+int cell(double at, int low, int high) {
+  const int cut = static_cast<int>(at);
+  return std::clamp(at < cut ? cut - 1 : cut, low, high);
+}
 
 }  // namespace
 
@@ -36,10 +64,7 @@ Result<RangeScanner> RangeScanner::create(const road::Track& track, const RangeS
   scanner.options_ = options;
   scanner.add_wall(track, 1.0);
   scanner.add_wall(track, -1.0);
-  for (int i = 0; i < options.beams; ++i) {
-    const double angle = scanner.first_angle() + scanner.increment() * i;
-    scanner.directions_.emplace_back(chicane::cos(angle), chicane::sin(angle));
-  }
+  scanner.directions_ = directions_of(options);
   return scanner;
 }
 
@@ -65,7 +90,6 @@ void RangeScanner::add_wall(const road::Track& track, double side) {
   add_pieces(begin);
 }
 
-/// The points from `begin` on are one wall without a gap.
 void RangeScanner::add_pieces(std::size_t begin) {
   for (std::size_t first = begin; first + 1 < points_.size(); first += kPiece - 1) {
     Piece piece{.begin = first, .end = std::min(first + kPiece, points_.size())};
@@ -87,8 +111,7 @@ void RangeScanner::scan(const model::Pose& sensor, std::span<float> ranges) cons
   }
 }
 
-/// Draws one wall: each chord covers the beams between the directions of its ends, and the nearest hit is
-/// kept.
+/// Each chord of the wall covers the beams between the directions of its ends.
 void RangeScanner::draw(std::span<const Vec2> points, const model::Pose& sensor,
                         std::span<float> ranges) const noexcept {
   const double c = chicane::cos(sensor.psi), s = chicane::sin(sensor.psi);
@@ -108,7 +131,8 @@ void RangeScanner::draw(std::span<const Vec2> points, const model::Pose& sensor,
     const Vec2 chord = to - from;
     const double numerator = cross(from, chord);
     const double begin = turn >= 0.0 ? from_angle : from_angle + turn;
-    // Try each beam also one turn on and back: behind the sensor angles continue past a half turn.
+    // Angles of a chord behind the sensor go beyond ± π, so that its beams are also sought one turn on and
+    // back.
     for (const double lap : {0.0, kTwoPi, -kTwoPi}) {
       const double first = std::max(0.0, std::ceil(beam_of(begin + lap)));
       const double end = std::min(last, std::floor(beam_of(begin + lap + std::fabs(turn))));
@@ -133,29 +157,6 @@ std::vector<std::vector<Vec2>> RangeScanner::walls() const {
   return walls;
 }
 
-namespace {
-
-constexpr int kMostRoom = 255;  // limit of a stored distance [cells]
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// Range of t in which x0 + t u lies in [0, size], for one axis.
-struct Interval {
-  double begin = -kInfinity, end = kInfinity;
-};
-Interval inside(double x0, double u, double size) {
-  if (u == 0.0) return x0 >= 0.0 && x0 <= size ? Interval{} : Interval{kInfinity, -kInfinity};
-  const double a = -x0 / u, b = (size - x0) / u;
-  return {std::min(a, b), std::max(a, b)};
-}
-
-/// Rounds down, without a call where the processor has no instruction for it.
-int cell(double at, int low, int high) {
-  const int cut = static_cast<int>(at);
-  return std::clamp(at < cut ? cut - 1 : cut, low, high);
-}
-
-}  // namespace
-
 Result<MapScanner> MapScanner::create(const OccupancyGrid& grid, const RangeScannerOptions& options) {
   if (const Result<void> sound = check(options); !sound) return fail(sound.error());
   const std::size_t cells = grid.width > 0 && grid.height > 0
@@ -178,20 +179,17 @@ Result<MapScanner> MapScanner::create(const OccupancyGrid& grid, const RangeScan
   std::transform(grid.is_wall.begin(), grid.is_wall.end(), scanner.room_.begin(),
                  [](bool is_wall) { return static_cast<std::uint8_t>(is_wall ? 0 : kMostRoom); });
   scanner.measure_free_room();
-  for (int i = 0; i < options.beams; ++i) {
-    const double angle = options.first_angle() + options.increment() * i;
-    scanner.directions_.emplace_back(chicane::cos(angle), chicane::sin(angle));
-  }
+  scanner.directions_ = directions_of(options);
   return scanner;
 }
 
-/// The distance transform of the chessboard: a king's moves to the nearest wall, in two passes.
+/// Distance transform with the chessboard metric, in which a diagonal step counts one, in two passes.
 void MapScanner::measure_free_room() {
   const auto relax = [&](int x, int y, int dx, int dy) {
     const int from_x = x + dx, from_y = y + dy;
     if (from_x < 0 || from_y < 0 || from_x >= width_ || from_y >= height_) return;
-    const int through = room(from_x, from_y) + 1;
-    if (through < room(x, y)) room(x, y) = static_cast<std::uint8_t>(through);
+    const int through = room_[at(from_x, from_y)] + 1;
+    if (through < room_[at(x, y)]) room_[at(x, y)] = static_cast<std::uint8_t>(through);
   };
   for (int y = 0; y < height_; ++y)
     for (int x = 0; x < width_; ++x) {
@@ -211,12 +209,11 @@ Vec2 MapScanner::in_cells(const Vec2& place) const noexcept {
 }
 
 bool MapScanner::is_wall(const Vec2& place) const noexcept {
-  const Vec2 at = in_cells(place);
-  const bool is_inside = at.x() >= 0.0 && at.y() >= 0.0 && at.x() < width_ && at.y() < height_;
-  return is_inside && room(static_cast<int>(at.x()), static_cast<int>(at.y())) == 0;
+  const Vec2 cells = in_cells(place);
+  const bool is_inside = cells.x() >= 0.0 && cells.y() >= 0.0 && cells.x() < width_ && cells.y() < height_;
+  return is_inside && room_[at(static_cast<int>(cells.x()), static_cast<int>(cells.y()))] == 0;
 }
 
-/// Distance to the first wall [cells]; infinite where there is none.
 double MapScanner::cast(const Vec2& from, const Vec2& direction) const noexcept {
   const Interval across = inside(from.x(), direction.x(), width_);
   const Interval along = inside(from.y(), direction.y(), height_);
@@ -227,9 +224,9 @@ double MapScanner::cast(const Vec2& from, const Vec2& direction) const noexcept 
   int y = cell(from.y() + t * direction.y(), 0, height_ - 1);
   const double per_x = 1.0 / direction.x(), per_y = 1.0 / direction.y();  // infinite along an axis
   while (t <= longest) {
-    const int free = room(x, y);
+    const int free = room_[at(x, y)];
     if (free == 0) return t;
-    // Out of the square of free cells around this one, into the cell next to it.
+    // Leave the square of free cells around this one, into a cell beside it.
     const int step_x = direction.x() > 0.0 ? free : -free, step_y = direction.y() > 0.0 ? free : -free;
     const double to_x =
         direction.x() == 0.0 ? kInfinity : (x + (step_x > 0 ? step_x : step_x + 1) - from.x()) * per_x;
@@ -252,7 +249,8 @@ double MapScanner::cast(const Vec2& from, const Vec2& direction) const noexcept 
 void MapScanner::scan(const model::Pose& sensor, std::span<float> ranges) const noexcept {
   const Vec2 here = in_cells({sensor.x, sensor.y});
   const double c = chicane::cos(sensor.psi), s = chicane::sin(sensor.psi);
-  const Vec2 ahead{axis_.x() * c + axis_.y() * s, axis_.x() * s - axis_.y() * c};  // now in the map's axes
+  // The sensor's x axis in the axes of the map.
+  const Vec2 ahead{axis_.x() * c + axis_.y() * s, axis_.x() * s - axis_.y() * c};
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     const Vec2& beam = directions_[i];
     const Vec2 direction{ahead.x() * beam.x() - ahead.y() * beam.y(),

@@ -11,9 +11,11 @@
 #include "chicane/model/state.hpp"
 #include "chicane/road/track.hpp"
 
+/// Simulated planar laser scanners: distances to the walls of a road, or of an occupancy map.
+
 namespace chicane::sim {
 
-/// A planar laser scanner. Defaults: the Hokuyo of the F1TENTH car.
+/// Geometry of a planar laser scanner. Defaults: the Hokuyo of the F1TENTH car.
 struct RangeScannerOptions {
   int beams = 1080;                   ///< [2, 100000]
   double field_of_view = 4.71238898;  ///< angle from the first beam to the last [rad], (0, 2π]
@@ -53,26 +55,29 @@ class RangeScanner {
   [[nodiscard]] std::vector<std::vector<Vec2>> walls() const;
 
  private:
-  /// Some consecutive points of a wall, in a circle.
+  /// Some consecutive points of a wall, with a circle round them.
   struct Piece {
-    std::size_t begin = 0, end = 0;  ///< range in points_; a point belongs to the pieces on both of its sides
-    Vec2 centre{};
-    double radius = 0.0;
+    std::size_t begin = 0, end = 0;  ///< range in points_; neighbouring pieces share a point
+    Vec2 centre{};                   ///< centre of the circle in W [m]
+    double radius = 0.0;             ///< radius of the circle [m]
   };
 
+  /// Adds the wall on one side of the road: 1 left, -1 right.
   void add_wall(const road::Track& track, double side);
+  /// Adds the points from `begin` on, one wall without a gap, as pieces.
   void add_pieces(std::size_t begin);
+  /// Lowers the ranges of the beams that hit a wall through `points` nearer than before.
   void draw(std::span<const Vec2> points, const model::Pose& sensor, std::span<float> ranges) const noexcept;
 
   RangeScannerOptions options_;
-  std::vector<Vec2> points_;
+  std::vector<Vec2> points_;  ///< points of all walls in W [m]
   std::vector<Piece> pieces_;
   std::vector<Vec2> directions_;  ///< directions of the beams in the sensor's frame
 };
 
 /// A map of square cells that are wall or free, seen from above.
 struct OccupancyGrid {
-  static constexpr std::size_t kMostCells = 64'000'000;
+  static constexpr std::size_t kMostCells = 64'000'000;  ///< limit of cells: bounds memory; chosen
 
   int width = 0, height = 0;       ///< [cells], > 0, at most kMostCells in all
   double resolution = 0.05;        ///< side of a cell [m], > 0
@@ -81,9 +86,10 @@ struct OccupancyGrid {
 };
 
 /// Distances from a point to the walls of an occupancy map. Exact: a beam ends where it enters the first cell
-/// that is wall. Outside of the map is nothing. Immutable after create(): safe from many threads.
+/// that is wall. Beams that leave the map hit nothing. Immutable after create(): safe from many threads.
 ///
-/// A byte for each cell: how many cells around it are free, so that a beam takes free room in large steps.
+/// Memory: one byte for each cell, which holds the size of the free square around it, so that a beam crosses
+/// free room in large steps.
 class MapScanner {
  public:
   /// Creates a scanner of a map. kInvalidArgument for options out of range, or a grid with inconsistent
@@ -99,24 +105,23 @@ class MapScanner {
   [[nodiscard]] const RangeScannerOptions& options() const noexcept { return options_; }
 
  private:
+  /// Position in cells from the origin of a place in W.
   [[nodiscard]] Vec2 in_cells(const Vec2& place) const noexcept;
+  /// Distance along a unit vector to the first wall [cells]; infinite without one.
   [[nodiscard]] double cast(const Vec2& from, const Vec2& direction) const noexcept;
+  /// Fills room_, which holds 0 for walls and the largest value for free cells.
   void measure_free_room();
-  [[nodiscard]] std::uint8_t& room(int x, int y) noexcept {
-    return room_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
-                 static_cast<std::size_t>(x)];
-  }
-  [[nodiscard]] std::uint8_t room(int x, int y) const noexcept {
-    return room_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
-                 static_cast<std::size_t>(x)];
+  /// Index of a cell in room_.
+  [[nodiscard]] std::size_t at(int x, int y) const noexcept {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
   }
 
   RangeScannerOptions options_;
-  int width_ = 0, height_ = 0;
-  double resolution_ = 0.0;
-  model::Pose origin_{};
+  int width_ = 0, height_ = 0;      ///< size of the map [cells]
+  double resolution_ = 0.0;         ///< side of a cell [m]
+  model::Pose origin_{};            ///< OccupancyGrid::origin
   Vec2 axis_{1.0, 0.0};             ///< direction of the rows in W
-  std::vector<std::uint8_t> room_;  ///< 0: wall; n: all cells less than n away, diagonals too, are free
+  std::vector<std::uint8_t> room_;  ///< 0: wall; n: the cells up to n - 1 columns and rows away are free
   std::vector<Vec2> directions_;    ///< directions of the beams in the sensor's frame
 };
 

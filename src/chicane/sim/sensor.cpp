@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Sensor: samples the plant with latency and noise, and keeps the commands in flight.
+// Signals between plant and controller: measurements with latency and noise, and commands in flight.
 #include "chicane/sim/sensor.hpp"
 
 #include <algorithm>
@@ -12,6 +12,7 @@
 namespace chicane::sim {
 namespace {
 
+/// Multiple of `quantum` nearest to a value; the value itself for a quantum of 0.
 double quantised(double value, double quantum) noexcept {
   return quantum > 0.0 ? quantum * std::floor(value / quantum + 0.5) : value;
 }
@@ -78,7 +79,6 @@ Sensor::Sight Sensor::seen_at(double time) const noexcept {
 }
 
 void ActuationDelay::reset(const model::Command& acting) noexcept {
-  first_ = 0;
   count_ = 0;
   acting_ = acting;
 }
@@ -86,26 +86,22 @@ void ActuationDelay::reset(const model::Command& acting) noexcept {
 void ActuationDelay::push(double time, const model::Command& command) noexcept {
   time = std::max(time, last_time());
   if (count_ == kCapacity) {
-    first_ = (first_ + 1) % kCapacity;
+    std::shift_left(waiting_.begin(), waiting_.end(), 1);
     --count_;
   }
-  waiting_[static_cast<std::size_t>((first_ + count_) % kCapacity)] = {time, command};
-  ++count_;
+  waiting_[count_++] = {time, command};
 }
 
 double ActuationDelay::last_time() const noexcept {
-  if (count_ == 0) return -std::numeric_limits<double>::infinity();
-  return waiting_[static_cast<std::size_t>((first_ + count_ - 1) % kCapacity)].time;
+  return count_ > 0 ? waiting_[count_ - 1].time : -std::numeric_limits<double>::infinity();
 }
 
 const model::Command& ActuationDelay::at(double time) noexcept {
-  // A command due within a nanosecond is due: sums of step lengths round.
-  constexpr double kRounding = 1e-9;  // rounding of times [s]
-  while (count_ > 0 && waiting_[static_cast<std::size_t>(first_)].time <= time + kRounding) {
-    acting_ = waiting_[static_cast<std::size_t>(first_)].command;
-    first_ = (first_ + 1) % kCapacity;
-    --count_;
-  }
+  constexpr double kRounding = 1e-9;  // [s] rounding of sums of step lengths
+  std::size_t due = 0;
+  while (due < count_ && waiting_[due].time <= time + kRounding) acting_ = waiting_[due++].command;
+  std::shift_left(waiting_.data(), waiting_.data() + count_, static_cast<std::ptrdiff_t>(due));
+  count_ -= due;
   return acting_;
 }
 

@@ -11,16 +11,18 @@
 #include "chicane/model/state.hpp"
 #include "chicane/sim/plant.hpp"
 
+/// Signals between plant and controller: the sensor, and the delay of commands.
+
 namespace chicane::sim {
 
 /// Errors between the plant and a controller's measurement. Zero means perfect.
 struct SensorOptions {
   double position_noise = 0.0;    ///< standard deviation of x and y [m]
-  double heading_noise = 0.0;     ///< [rad]
-  double speed_noise = 0.0;       ///< [m/s]
-  double position_quantum = 0.0;  ///< x and y are rounded to multiples of it [m]
-  double heading_quantum = 0.0;   ///< [rad]
-  double speed_quantum = 0.0;     ///< [m/s]
+  double heading_noise = 0.0;     ///< standard deviation of the yaw [rad]
+  double speed_noise = 0.0;       ///< standard deviation of the speed [m/s]
+  double position_quantum = 0.0;  ///< step to whose multiples x and y are rounded [m]
+  double heading_quantum = 0.0;   ///< step to whose multiples the yaw is rounded [rad]
+  double speed_quantum = 0.0;     ///< step to whose multiples the speed is rounded [m/s]
   double latency = 0.0;           ///< age of a measurement when the controller gets it, unknown to it [s]
 
   friend bool operator==(const SensorOptions&, const SensorOptions&) = default;
@@ -38,27 +40,29 @@ class Sensor {
   Sensor(const SensorOptions& options, std::uint64_t seed) noexcept : options_{options}, random_{seed} {}
   /// Applies other options from now on; the stream of random numbers continues.
   void configure(const SensorOptions& options) noexcept { options_ = options; }
+  /// Measurement of the plant at `time` [s].
   [[nodiscard]] model::Measurement sample(double time, const Plant& plant) noexcept;
 
  private:
-  /// Observable state at a moment.
+  /// True values of the measured quantities at a moment.
   struct Sight {
     double time = 0.0, x = 0.0, y = 0.0, psi = 0.0, speed = 0.0, steer = 0.0, throttle = 0.0;
   };
-  static constexpr std::size_t kRemembered = 128;  ///< the longest latency, sampled each 4 ms
+  static constexpr std::size_t kRemembered = 128;  ///< derived from the longest latency: 500 ms / 4 ms
+  /// True values at `time` [s], by interpolation.
   [[nodiscard]] Sight seen_at(double time) const noexcept;
 
   SensorOptions options_;
   Random random_;
-  std::array<Sight, kRemembered> sights_{};  ///< a ring
+  std::array<Sight, kRemembered> sights_{};  ///< ring of the last samples
   std::size_t count_ = 0;                    ///< samples so far
 };
 
-/// Commands on their way to the actuators: each acts from its own time on, until a later one does. Any delay,
-/// not only multiples of a step. Fixed memory: when full, the oldest waiting command is dropped in favour of
-/// the next.
+/// Commands on their way to the actuators. Each acts from its own time on until a later one does; delays need
+/// not be multiples of a step. Fixed memory: when it is full, the oldest waiting command is dropped.
 class ActuationDelay {
  public:
+  /// Drops the waiting commands; `acting` acts.
   void reset(const model::Command& acting) noexcept;
   /// `command` acts from `time` [s] on. Times must not decrease; a decreasing one is raised to the last.
   void push(double time, const model::Command& command) noexcept;
@@ -69,13 +73,12 @@ class ActuationDelay {
 
  private:
   struct Entry {
-    double time = 0.0;
+    double time = 0.0;  ///< time from which the command acts [s]
     model::Command command;
   };
-  static constexpr int kCapacity = 128;  ///< commands in flight
-  std::array<Entry, kCapacity> waiting_{};
-  int first_ = 0;
-  int count_ = 0;
+  static constexpr std::size_t kCapacity = 128;  ///< commands in flight; chosen: 128 · 4 ms = 0.5 s
+  std::array<Entry, kCapacity> waiting_{};       ///< ascending in time
+  std::size_t count_ = 0;                        ///< waiting commands
   model::Command acting_;
 };
 

@@ -28,7 +28,8 @@ double engine_yaw(double psi) noexcept {
   return yaw < 0.0 ? yaw + 360.0 : yaw;
 }
 
-/// Force over peak up to the slip of the peak, slip over that slip beyond it.
+/// Use of a tyre in one direction: force over peak force up to the slip of the peak, and beyond it slip over
+/// that slip.
 double use_of(const model::FrictionCurve& curve, double slip) noexcept {
   const double size = std::fabs(slip);
   return size < curve.extremum_slip ? curve(size) / curve.extremum_value : size / curve.extremum_slip;
@@ -96,8 +97,9 @@ void UdacityCar::advance(const model::Command& command) noexcept {
 
 void UdacityCar::help_steering() noexcept {
   const double change = state_.psi - psi_before_;
+  constexpr double kMostChange = 10.0;  // [deg] from this change on the original's script does nothing
   const double seen = engine_yaw(state_.psi) - engine_yaw(psi_before_);
-  if (std::fabs(seen) < 10.0) velocity_ = rotated(velocity_, params_.steer_helper * change);
+  if (std::fabs(seen) < kMostChange) velocity_ = rotated(velocity_, params_.steer_helper * change);
   psi_before_ = state_.psi;
 }
 
@@ -114,7 +116,7 @@ void UdacityCar::apply_pedal(double pedal) noexcept {
     } else if (brake > 0.0) {
       wheel.brake = 0.0;
       wheel.drive = -params_.reverse_torque * brake;
-    }  // otherwise the brake torque of before stays: the original never clears it here
+    }  // else the brake torque stays: the original does not clear it here
   }
 }
 
@@ -144,7 +146,7 @@ double UdacityCar::forward_force(Wheel& wheel, double speed_along, double dt) co
   const FullJet<1> normalised = params_.forward(FullJet<1>::variable(wheel.slip_ratio, 0));
   const double force = wheel.load * normalised.v;
   const double stiffness =
-      std::max(wheel.load * normalised.slopes[0] / denominator, 0.0);  // per slip speed [N s/m]
+      std::max(wheel.load * normalised.slopes[0] / denominator, 0.0);  // force over slip speed [N s/m]
   const double body_gain = dt * stiffness * 4.0 / params_.mass;
   const double wheel_gain = dt * stiffness * wheel.radius / wheel.inertia;
 
@@ -206,7 +208,7 @@ void UdacityCar::publish(const Vec2& velocity_before, double pedal) noexcept {
   for (std::size_t i = 0; i < wheels_.size(); ++i) {
     output_.slip_angle[i] = wheels_[i].slip_angle;
     output_.slip_ratio[i] = wheels_[i].slip_ratio;
-    // Each direction has a curve of its own and shares nothing. The wheels of an axle carry the same load.
+    // Longitudinal and lateral force do not share grip. The wheels of an axle carry the same load.
     output_.tire_use[i / 2] += 0.5 * std::max(use_of(params_.sideways, wheels_[i].slip_angle),
                                               use_of(params_.forward, wheels_[i].slip_ratio));
   }

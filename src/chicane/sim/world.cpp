@@ -11,13 +11,15 @@
 namespace chicane::sim {
 namespace {
 
-constexpr double kSearch = 6.0;           // reach of a local projection [m]
-constexpr double kLost = 8.0;             // farther off the road than this: look for the line everywhere [m]
-constexpr int kLostPatience = 10;         // sightings between such looks
-constexpr double kCoveredShare = 0.95;    // share of the line that a lap must cover
-constexpr double kBackOnTrack = 0.05;     // distance that ends an off-track event [m] ...
-constexpr double kBackOnTrackTime = 0.2;  // ... once held so long [s]
-constexpr double kFullSize = 1.5;         // wheelbase [m]; all lengths are less for shorter cars
+// Distances are for cars in full size; chosen, as is all else.
+constexpr double kSearch = 6.0;             // [m] reach of a local projection
+constexpr double kLost = 8.0;               // [m] distance off the road at which the whole line is searched
+constexpr int kLostPatience = 10;           // sightings between two such searches
+constexpr double kCoveredShare = 0.95;      // share of the line that a lap must cover
+constexpr double kBackOnTrack = 0.05;       // [m] edge distance that ends an off-track event
+constexpr double kBackOnTrackTime = 0.2;    // [s] time for which that distance must hold
+constexpr double kFullSize = 1.5;           // [m] wheelbase from which on a car is in full size
+constexpr double kJudgementPeriod = 0.005;  // [s] time between two sightings of the plant
 
 /// Size of a car over full size, at most 1.
 double size_of(const Sighting& car) noexcept {
@@ -50,8 +52,8 @@ void Judge::reset(double time, const Sighting& car) noexcept {
   state_ = {};
   size_ = size_of(car);
   state_.time = time;
-  // A start on the line is timed from standstill; any other first drives to the line.
-  constexpr double kOnTheLine = 1.0;  // [m]
+  // A car on the start line is timed at once; any other drives to the line first.
+  constexpr double kOnTheLine = 1.0;  // [m] distance of a car on the start line
   const road::Path& line = track_->centre();
   state_.s = project_anywhere(*track_, car.pose).s;
   state_.progress = line.difference(state_.s, track_->start_s());
@@ -185,10 +187,7 @@ void Judge::start_lap(double crossing_time) noexcept {
 
 namespace {
 
-constexpr double kJudgementPeriod = 0.005;  // [s]
-
-/// The waypoint nearest to the car; on a road that crosses itself, the one nearest along the road that the
-/// car goes along.
+/// Index of the waypoint nearest to the car; where the road crosses itself, nearest along the car's passage.
 int nearest_waypoint(const road::Track& track, const model::Pose& pose) noexcept {
   const auto& points = track.raw_points();
   const road::Path& line = track.centre();
@@ -210,7 +209,7 @@ int nearest_waypoint(const road::Track& track, const model::Pose& pose) noexcept
 }  // namespace
 
 World::World(Plant& plant, const road::Track& track) : plant_{&plant}, judge_{track} {
-  // A model car lives faster: the time scale of its size (model/vehicle.hpp).
+  // Time scale of a model car by its wheelbase (model::Similarity); 1 from a wheelbase of 1 m on.
   const auto patches = plant.contact_points();
   const double pace = std::min(std::sqrt(patches[0].x() - patches[2].x()), 1.0);
   steps_per_judgement_ =

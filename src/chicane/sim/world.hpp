@@ -10,9 +10,11 @@
 #include "chicane/road/track.hpp"
 #include "chicane/sim/plant.hpp"
 
+/// A car on its track: its position along the road, whether it is on it, and its laps.
+
 namespace chicane::sim {
 
-/// Place of a car on its track, and its laps. Lap and sector times are interpolated to the crossing.
+/// Position of a car on its track, and its laps. Lap and sector times are interpolated to the crossing.
 struct WorldState {
   static constexpr int kSectors = 3;
 
@@ -24,7 +26,7 @@ struct WorldState {
   double progress = 0.0;       ///< along the line since the start line, not wrapped [m]; negative before it
 
   double edge_distance = 0.0;      ///< gap from outermost contact patch to edge [m], negative = off the road
-  double min_edge_distance = 0.0;  ///< smallest so far [m]
+  double min_edge_distance = 0.0;  ///< smallest edge_distance of the run [m]
   bool is_off_track = false;       ///< true from edge_distance < 0 on, until it was >= 0.05 m for 0.2 s
   int off_track_events = 0;        ///< times is_off_track became true
   double off_track_time = 0.0;     ///< total time with edge_distance < 0 [s]
@@ -43,18 +45,18 @@ struct WorldState {
   std::array<double, kSectors> last_sector_times{};  ///< sectors of the last completed lap [s]
 };
 
-/// A car as an observer beside the road sees it.
+/// Observation of a car from beside the road.
 struct Sighting {
   model::Pose pose{};
-  double speed = 0.0;                    ///< [m/s]
-  std::array<Vec2, 4> contact_points{};  ///< Plant::contact_points()
+  double speed = 0.0;                    ///< magnitude of the velocity [m/s]
+  std::array<Vec2, 4> contact_points{};  ///< Plant::contact_points() [m]
 };
 
 /// Projects a car without a previous position; at a crossing, picks the road closest to the heading.
 [[nodiscard]] road::Projection project_anywhere(const road::Track& track, const model::Pose& car) noexcept;
 
-/// Judges a car from a sequence of sightings: its place on the track, whether all of it is on the road, its
-/// laps. Knows no plant: the car may be simulated here (World) or elsewhere.
+/// Judges a car from a sequence of sightings: its position on the track, whether all of it is on the road,
+/// and its laps. It needs no plant: the car may be simulated here (World) or elsewhere.
 ///
 /// The drivable surface reaches to the edge plus the kerb: a patch is off when its outer edge is beyond. The
 /// start line lies across the road at Track::start_s(). A lap counts when the car crosses it forward for the
@@ -69,7 +71,7 @@ class Judge {
   /// Starts a new run from any pose, at `time` [s]. Within 1 m of the start line the first lap is timed from
   /// now on, otherwise from the first crossing. For wheelbases below 1.5 m all lengths shrink in proportion.
   void reset(double time, const Sighting& car) noexcept;
-  /// Adds a sighting; times must rise.
+  /// Adds a sighting at `time` [s]; times must rise.
   void see(double time, const Sighting& car) noexcept;
 
   /// Continues the judgement on a copy of the track, which must outlive the judge.
@@ -82,9 +84,13 @@ class Judge {
   [[nodiscard]] std::span<const double> last_corner_times() const noexcept { return last_corner_times_; }
 
  private:
+  /// Projects the car on the line, `elapsed` [s] after the previous sighting.
   void locate(double elapsed, const Sighting& car) noexcept;
+  /// Measures the gap to the edges, and counts the time off the road.
   void measure_edges(double elapsed, const Sighting& car) noexcept;
+  /// Ends the laps, sectors and corners that the car has passed since it was at `progress_before` [m].
   void time_laps(double progress_before, double elapsed) noexcept;
+  /// Counts a lap, or voids it, when the car has crossed the start line.
   void cross_line(double crossing_time) noexcept;
   void start_lap(double crossing_time) noexcept;
   void end_corner(double crossing_time) noexcept;
@@ -92,22 +98,22 @@ class Judge {
   const road::Track* track_;
   double size_ = 1.0;          ///< scale of distances: size of the car over full size, at most 1
   double covered_ = 0.0;       ///< line covered since the lap began, without jumps [m]
-  double lap_length_ = 0.0;    ///< Track::lap_length()
-  double next_line_ = 0.0;     ///< progress at the next crossing of the line [m]
+  double lap_length_ = 0.0;    ///< Track::lap_length() [m]
+  double next_line_ = 0.0;     ///< progress at the next crossing of the start line [m]
   double lap_start_ = 0.0;     ///< time at which the lap began [s]
   double sector_start_ = 0.0;  ///< time at which the sector began [s]
   std::vector<road::Corner> corners_;
-  std::vector<double> corner_ends_;                       ///< road::corner_sectors()
-  std::vector<double> corner_times_, last_corner_times_;  ///< [s]
+  std::vector<double> corner_ends_;                       ///< road::corner_sectors() [m]
+  std::vector<double> corner_times_, last_corner_times_;  ///< corners of the running lap, of the last one [s]
   std::size_t corner_ = 0;                                ///< index of the current corner
   double corner_start_ = 0.0;                             ///< time at which the corner began [s]
-  double off_track_at_lap_start_ = 0.0;
-  double back_on_track_ = 0.0;  ///< time since the car came back on track [s]
-  int lost_for_ = 0;            ///< count of sightings far from the line
+  double off_track_at_lap_start_ = 0.0;                   ///< WorldState::off_track_time then [s]
+  double back_on_track_ = 0.0;                            ///< time since the car came back on track [s]
+  int lost_for_ = 0;                                      ///< successive sightings far from the line
   WorldState state_;
 };
 
-/// A car on a track: advances the plant, and shows the judge its contact patches every 5 ms or every physics
+/// Plant and judge together: advances the plant, and gives the judge a sighting every 5 ms or every physics
 /// step, whichever is longer. Allocates in the constructor only, cannot fail. One thread at a time; returned
 /// references change with the next advance(), place() or reset().
 class World {
@@ -146,21 +152,23 @@ class World {
   }
 
  private:
+  /// Sighting of the plant.
   [[nodiscard]] Sighting sighting() const noexcept;
 
   Plant* plant_;
   Judge judge_;
-  double begin_ = 0.0;        ///< time at which the steps start to count [s]: 0, or the last see()
+  double begin_ = 0.0;        ///< time at which the steps start to count [s]: 0, or the last see() or put()
   long long step_count_ = 0;  ///< steps since begin_
-  int steps_per_judgement_ = 1;
+  int steps_per_judgement_ = 1;  ///< physics steps between two sightings
 };
 
-/// Fills measurement.waypoints with the points that telemetry shows for a car at (x, y, psi), by the rule of
-/// the original (udacity/self-driving-car-sim v1.45, WaypointTracker): the nearest waypoint, or its successor
-/// when that lies more than 90° off the car's direction, is next. Shown are the one before it and the ones
-/// after, `count` in all, around the lap if the track is closed, fewer at the end of an open one. Where a
-/// road crosses itself (nowhere in the original), the passage along the car's heading is taken. Returns their
-/// number. `count` is clamped to [0, kMaxWaypoints]. O(points), no allocation.
+/// Fills measurement.waypoints with the points that telemetry shows for a car at `pose`, and returns their
+/// number. By the rule of the original (udacity/self-driving-car-sim v1.45, WaypointTracker) the next
+/// waypoint is the nearest one, or its successor if the nearest lies more than 90° off the car's direction.
+/// Telemetry shows the waypoint before the next one and those after, `count` in all: around the lap of a
+/// closed track, fewer at the end of an open one. Where a road crosses itself (nowhere in the original), the
+/// passage along the car's heading counts. `count` is clamped to [0, kMaxWaypoints]. O(points), no
+/// allocation.
 int select_waypoints(const road::Track& track, const model::Pose& pose, int count,
                      model::Measurement& measurement) noexcept;
 

@@ -8,9 +8,10 @@
 #include "chicane/solver.h"
 #include "chicane/solver/solution.hpp"
 
-// Implementation behind the handles of chicane/solver.h. Every source with a problem for C includes it.
+// Functions of chicane/solver.h, the solver's interface for C: they check their arguments and call the
+// functions of a problem's solver. Every source with a problem for C includes this file.
 
-/// A problem: its sizes, and the functions of its solver.
+/// A problem behind its handle: its sizes, and the functions of its solver (c_interface.hpp).
 struct chicane_problem {
   chicane_sizes sizes;
   const char* name;
@@ -29,14 +30,16 @@ struct chicane_problem {
   bool (*feedback)(chicane_solver*, const double*);
   bool (*feedbackf)(chicane_solver*, const float*);
 };
+/// A solver behind its handle.
 struct chicane_solver {
   const chicane_problem* problem;
-  int is_ready;         ///< the last solve has left a finite answer
-  int is_prepared = 0;  ///< feedback may be asked for
+  int is_ready;         ///< whether the last solve has a finite answer
+  int is_prepared = 0;  ///< whether chicane_prepare() has succeeded since
 };
 
 namespace chicane::solver::c {
 
+/// Checks pointers and the length of an array.
 template <class T>
 chicane_error check(const chicane_solver* solver, chicane_array array, const T* numbers, std::size_t count) {
   if (solver == nullptr || numbers == nullptr) return CHICANE_NULL;
@@ -49,6 +52,7 @@ bool are_finite(const T* numbers, std::size_t count, bool may_be_infinite) {
   }
   return true;
 }
+/// Checks an array that is to be set.
 template <class T>
 chicane_error check_to_set(const chicane_solver* solver, chicane_array array, const T* from,
                            std::size_t count) {
@@ -58,12 +62,14 @@ chicane_error check_to_set(const chicane_solver* solver, chicane_array array, co
       array == CHICANE_STATES || array == CHICANE_INPUTS;  // arrays in which not-a-number is replaced
   return is_guess || are_finite(from, count, array != CHICANE_PARAMETERS) ? CHICANE_DONE : CHICANE_NOT_FINITE;
 }
+/// Checks pointers and the first state.
 template <class T>
 chicane_error check_state(const chicane_solver* solver, const T* x0) {
   if (solver == nullptr || x0 == nullptr) return CHICANE_NULL;
   return are_finite(x0, static_cast<std::size_t>(solver->problem->sizes.nx), false) ? CHICANE_DONE
                                                                                     : CHICANE_NOT_FINITE;
 }
+/// Checks the first state and that the solver is prepared.
 template <class T>
 chicane_error check_feedback(const chicane_solver* solver, const T* x0) {
   const chicane_error error = check_state(solver, x0);

@@ -17,21 +17,23 @@
 
 namespace chicane::solver {
 
-/// A problem for C (chicane/solver.h): a source file with
+/// Solver of a problem for C (chicane/solver.h). A source file with
 ///
 ///     #include "chicane/solver/c_interface.hpp"
-///     extern "C" const chicane_problem* cart_pole(void) { return
-///     chicane::solver::c_problem<CartPole>("cart_pole"); }
+///     extern "C" const chicane_problem* cart_pole(void) {
+///       return chicane::solver::c_problem<CartPole>();
+///     }
 ///
-/// gives programs in C the function cart_pole(), and brings the functions of chicane/solver.h along. Such a
-/// type is default constructible, and has
+/// gives programs in C the function cart_pole() and the functions of chicane/solver.h. The type of the
+/// problem is default constructible, and has
 ///
 ///     static constexpr int kHorizon;
-///     static constexpr const char* kName;                                     // for chicane_problem_name()
-///     StageData<kHorizon + 1> p[…];  static constexpr int kParameters;        // optional: the first ones of
-///     p std::array<double, kNu> lower[kHorizon], upper[kHorizon];               // optional, as
-///     input_lower() gives them static constexpr double kCostOffset;                                    //
-///     optional: added to costs
+///     static constexpr const char* kName;         // for chicane_problem_name()
+///     static constexpr int kParameters;           // optional: number of parameters
+///     StageData<kHorizon + 1> p[…];               // optional: the parameters come first
+///     std::array<double, kNu> lower[kHorizon];    // optional: as input_lower() returns them
+///     std::array<double, kNu> upper[kHorizon];    // optional: as input_upper() returns them
+///     static constexpr double kCostOffset;        // optional: added to costs
 template <OcpProblem P>
 class CSolver final : public chicane_solver {
  public:
@@ -46,6 +48,7 @@ class CSolver final : public chicane_solver {
     if constexpr (requires { P::kParameters; }) return P::kParameters;
     return 0;
   }
+  /// Sizes of the problem for programs in C.
   static constexpr chicane_sizes sizes() noexcept {
     return {CHICANE_SOLVER_VERSION,
             P::kNx,
@@ -67,7 +70,8 @@ class CSolver final : public chicane_solver {
     budget_s_ = options.budget_s;
   }
 
-  /// Calls visit(number) of each entry of an array, in its order. What only a solve writes is given by value.
+  /// Calls visit(number) for each entry of an array, in its order: by reference, or by value for arrays that
+  /// only a solve writes.
   template <class Self, class Visit>
   static void each(Self& self, chicane_array array, const Visit& visit) noexcept {
     const auto rows = [&](auto& of, std::size_t count) {
@@ -198,8 +202,8 @@ class CSolver final : public chicane_solver {
 
   P problem_;
   OcpSolver<P, kHorizon> solver_;
-  Trajectory<P::kNx, P::kNu, kHorizon> trajectory_;
-  double budget_s_ = 0.0;
+  Trajectory<P::kNx, P::kNu, kHorizon> trajectory_;  ///< guess, then answer
+  double budget_s_ = 0.0;                            ///< time limit of a solve [s]; 0: none
 };
 
 namespace detail {

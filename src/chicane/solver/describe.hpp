@@ -9,10 +9,12 @@
 #include "chicane/solver/problem.hpp"
 #include "chicane/solver/solution.hpp"
 
+/// Reports of the solver as sentences.
+
 namespace chicane::solver {
 
 namespace detail {
-/// Amount with its place: "0.12 m at stage 14".
+/// Amount with unit and stage: "0.12 m at stage 14".
 [[nodiscard]] inline std::string amount(double value, std::string_view unit, int stage) {
   char number[32];
   std::snprintf(number, sizeof(number), "%.3g", value);
@@ -22,8 +24,8 @@ namespace detail {
 }
 }  // namespace detail
 
-/// A report in one sentence, in the problem's own words: "infeasible: right edge exceeded by 0.12 m at stage
-/// 14". What has no name is "constraint 1". Allocates: not for the control loop.
+/// A report in one sentence, with the problem's names: "infeasible: right edge exceeded by 0.12 m at stage
+/// 14". A constraint without a name is "constraint 1". Allocates: not for the control loop.
 template <OcpProblem P>
 [[nodiscard]] std::string describe(const P& problem, const SolveReport& report) {
   std::string text{to_string(report.status)};
@@ -37,8 +39,8 @@ template <OcpProblem P>
   return text + ": " + name + " exceeded by " + detail::amount(report.violation, unit, report.worst_stage);
 }
 
-/// The same of a problem with something that must hold: "infeasible: height at the end missed by 0.3 at stage
-/// 40". What has no name is "equality 0", "terminal equality 1", "terminal constraint 2".
+/// A report on a problem with hard constraints: "infeasible: height at the end missed by 0.3 at stage 40".
+/// Rows without a name are "equality 0", "terminal equality 1", "terminal constraint 2".
 template <HardProblem P>
 [[nodiscard]] std::string describe(const P& problem, const HardReport& report) {
   using Kind = HardReport::Kind;

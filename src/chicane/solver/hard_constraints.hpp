@@ -11,8 +11,8 @@
 
 namespace chicane::solver {
 
-/// **What must hold**, beside the dynamics and the bounds of inputs. A problem of either level may have any
-/// of
+/// Hard constraints: rows that must hold, beside the dynamics and the bounds of inputs. A problem of either
+/// level may have any of
 ///
 ///     static constexpr int kNh;    template <…> auto equality(k, x, u) const;           // = 0, k < N
 ///     static constexpr int kNeh;   template <…> auto terminal_equality(x) const;        // = 0 of x_N
@@ -22,21 +22,22 @@ namespace chicane::solver {
 ///         terminal_constraint_name(int) const;                                          // optional
 ///
 /// written like constraint() and terminal_residual(). OcpSolver then solves it by a primal-dual interior
-/// point method (docs/solver.md), and its report says by how much and where they are missed. Choose
-/// units in which a miss of `tolerance` is one that you do not mind. The soft penalty of a hard constraint is
-/// the penalty that it starts with.
+/// point method (docs/solver.md), and its report says where a row is missed and by how much. Choose units in
+/// which a miss of `tolerance` does not matter. The soft penalty of a hard constraint is its first penalty.
 
-/// Numbers of each kind of rows that a problem has.
+/// Number of equalities of a stage.
 template <class P>
 [[nodiscard]] constexpr int equality_count() noexcept {
   if constexpr (requires { P::kNh; }) return P::kNh;
   return 0;
 }
+/// Number of equalities at the end.
 template <class P>
 [[nodiscard]] constexpr int terminal_equality_count() noexcept {
   if constexpr (requires { P::kNeh; }) return P::kNeh;
   return 0;
 }
+/// Number of inequalities at the end.
 template <class P>
 [[nodiscard]] constexpr int terminal_constraint_count() noexcept {
   if constexpr (requires { P::kNec; }) return P::kNec;
@@ -49,24 +50,24 @@ concept SaysWhatIsHard = requires(const P& p) {
 };
 }  // namespace detail
 
-/// A problem with something that must hold.
+/// Concept of a problem with hard constraints.
 template <class P>
 concept HardProblem = OcpProblem<P> &&
     (equality_count<P>() + terminal_equality_count<P>() + terminal_constraint_count<P>() > 0 ||
      detail::SaysWhatIsHard<P>);
 
-/// Multipliers of what must hold, d(cost)/d(right-hand side), and the weights that a solve ended with: to
-/// start the next one with.
+/// Multipliers of hard constraints, d(cost)/d(right-hand side), and their weights at the end of a solve, from
+/// which the next one can start.
 template <class P, int Capacity>
 struct HardMultipliers {
   static constexpr std::size_t kNh = equality_count<P>();
   static constexpr std::size_t kEnd = terminal_equality_count<P>() + terminal_constraint_count<P>();
-  std::array<StageData<Capacity>, kNh> equality{};
-  std::array<double, kEnd> terminal{};  ///< equalities, then constraints
-  std::array<double, kNh> equality_weight{};
-  std::array<double, kEnd> terminal_weight{};
-  std::array<double, P::kNc> penalty_factor{};  ///< factors over hard constraints' first penalties
-  bool is_known = false;                        ///< false: a solve begins without
+  std::array<StageData<Capacity>, kNh> equality{};  ///< multipliers of the stages' equalities
+  std::array<double, kEnd> terminal{};              ///< multipliers at the end: equalities, then constraints
+  std::array<double, kNh> equality_weight{};        ///< weights of the stages' equalities
+  std::array<double, kEnd> terminal_weight{};       ///< weights at the end
+  std::array<double, P::kNc> penalty_factor{};      ///< factors over hard constraints' first penalties
+  bool is_known = false;                            ///< whether a solve starts from these
 
   /// Shifts to a horizon that begins `steps` stages later; the last ones are repeated.
   void shift(int steps, int horizon) noexcept {
@@ -80,11 +81,11 @@ struct HardMultipliers {
 /// Report on rows that must hold.
 struct HardReport : SolveReport {
   enum class Kind : std::uint8_t { kNone, kEquality, kTerminalEquality, kTerminalConstraint, kConstraint };
-  double miss = 0.0;        ///< the largest miss, in its own unit
-  Kind kind = Kind::kNone;  ///< kind of the largest violation; none if all hold exactly
-  int miss_stage = -1;
-  int miss_row = -1;  ///< index within its kind
-  int rounds = 0;     ///< updates of multipliers, one solve before each; iterations are summed
+  double miss = 0.0;        ///< largest violation of a row, in the row's unit
+  Kind kind = Kind::kNone;  ///< kind of that row; none if all hold exactly
+  int miss_stage = -1;      ///< stage of that row
+  int miss_row = -1;        ///< index of that row within its kind
+  int rounds = 0;           ///< updates of multipliers, with one solve before each
 };
 
 }  // namespace chicane::solver

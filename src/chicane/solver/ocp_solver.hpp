@@ -69,9 +69,9 @@ class OcpSolver {
     if (!start(problem, x0, trajectory)) return give_up(problem, x0, trajectory, report);
     return run(problem, x0, trajectory, deadline, report);
   }
-  /// The same after a small change of the problem's functions, from where the last solve ended: iterate,
-  /// slacks, multipliers and working set are kept. Pre: that was usable; horizon, bounds and penalties are
-  /// the same; `trajectory` is its answer.
+  /// Solves again after a small change of the problem's functions, from the end of the last solve: iterate,
+  /// slacks, multipliers and working set are kept. Pre: the last solve was usable; horizon, bounds and
+  /// penalties are the same; `trajectory` is the last answer.
   SolveReport solve_again(const P& problem, const State& x0, Trajectory& trajectory,
                           Deadline deadline = Deadline::never()) noexcept {
     begin();
@@ -86,37 +86,38 @@ class OcpSolver {
   /// Linearises and factorises at the answer, so that feedback() takes a few sweeps. Call it after a usable
   /// solve, or after one that ended at its limit with a finite answer. False if the result is not finite.
   bool prepare(const P& problem) noexcept;
-  /// The answer from x0 by what prepare() has left: the solution of that quadratic program with the step of
-  /// the first state given, its inputs inside their bounds. Soft constraints and what must hold answer as at
-  /// the prepared point; input bounds become active and inactive. May be called again and again.
+  /// Solves the quadratic program of prepare() from x0, with inputs inside their bounds. Soft and hard
+  /// constraints keep the active set of the prepared point; input bounds become active and inactive. May be
+  /// called many times.
   FeedbackReport feedback(const State& x0, Trajectory& trajectory) noexcept;
 
-  /// Adds iterations to `log` from the next solve on; the log must live as long. Null: none.
+  /// Adds iterations to `log`, which must outlive the solver, from the next solve on. Null: no log.
   void record_iterations(IterationLog* log) noexcept { log_ = log; }
 
   // ---- the filter method alone, for HardSolver
 
+  /// Start of the method.
   enum class Begin {
     kGuess,  ///< at the guess
-    kNear,   ///< there, with a low barrier: it is near the solution
+    kNear,   ///< at a guess near the solution, with a low barrier
     kHere    ///< where the last call ended, with a lower barrier
   };
-  /// Follows the barrier in at most `most` iterations, counted in `report`. True if it gets there:
-  /// solve_again() continues with full steps. Rows that must hold are equations then (detail/hard_rows.hpp),
-  /// and `problem` gets their multipliers.
+  /// Lowers the barrier to its end in at most `most` iterations, counted in `report`. True if that succeeds:
+  /// solve_again() continues with full steps. Hard rows are equations (detail/hard_rows.hpp), and `problem`
+  /// gets their multipliers.
   bool follow_barrier(P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline, int most,
                       Begin begin, SolveReport& report) noexcept;
-  /// Slacks of hard constraints to penalties that have changed.
+  /// Adapts the slacks of hard constraints to changed penalties.
   void update_penalties(const P& problem) noexcept { barrier_.update_penalties(problem, t_.horizon); }
 
-  /// Solves end where full steps fail: the primal-dual method comes before them.
+  /// Ends solves where full steps fail, because the primal-dual method comes before them.
   void take_only_full_steps() noexcept { only_full_steps_ = true; }
   /// Keeps the present point for take_point().
   void keep_point() noexcept {
     kept_ = t_;
     barrier_.save(kept_slacks_, t_.horizon);
   }
-  /// That point, its inputs inside their bounds, as an answer with its report.
+  /// Returns the kept point, its inputs inside their bounds, as the answer.
   SolveReport take_point(const P& problem, Trajectory& trajectory) noexcept;
 
   /// Multiplier of state i of x_{k+1} after a solve, i.e. d(cost)/dx of the stages after it; k < horizon.
@@ -132,23 +133,24 @@ class OcpSolver {
   static constexpr std::size_t kNx = P::kNx;
   static constexpr std::size_t kNu = P::kNu;
   static constexpr std::size_t kSize = Capacity;
-  static constexpr std::size_t kFirstHorizon = 5;  ///< first of the growing horizons
-  static constexpr std::size_t kMaxGrowth = 16;
+  // Chosen, unless said otherwise.
+  static constexpr std::size_t kFirstHorizon = 5;    ///< first of the growing horizons
+  static constexpr std::size_t kMaxGrowth = 16;      ///< largest growth of a horizon at once
   static constexpr double kGoodEnoughToGrow = 1e-1;  ///< residual at which the horizon grows
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  static constexpr double kDefectShare = 1e-7;    ///< share of the tolerance: Hessians amplify defects
-  static constexpr double kDefectFloor = 2e-15;   ///< limit by rounding
+  static constexpr double kDefectShare = 1e-7;    ///< largest defect over the tolerance: Hessians amplify it
+  static constexpr double kDefectFloor = 2e-15;   ///< least tolerance of defects: ten roundings
   static constexpr double kRounding = 2.2e-16;    ///< rounding of doubles
-  static constexpr double kFloorResidual = 1e-6;  ///< most that kAtFloor may have
+  static constexpr double kFloorResidual = 1e-6;  ///< largest residual of kAtFloor
   static constexpr bool kCanFilter = has_filter_method<P>();
-  /// Steps this short: exact curvature from here on. Dense problems pay for it.
+  /// Longest step from which on Hessians are exact; shorter for dense problems, whose Hessians cost more.
   static constexpr double kNear = has_cheap_curvature<P>() ? 1e-1 : 1e-2;
 
   using Evaluate = Evaluation<P, Arch>;
   using Lq = LqSolver<Arch, ProblemPattern<P>, kSize>;
   using V = Stages<Arch>;
 
-  /// All iterations, from an iterate that is ready to be linearised.
+  /// Iterates from the present point to the end of the solve.
   CHICANE_INLINE SolveReport run(const P& problem, const State& x0, Trajectory& trajectory,
                                  const Deadline& deadline, SolveReport report) noexcept {
     for (;; ++report.iterations, work_ += share_of_horizon()) {
@@ -185,6 +187,7 @@ class OcpSolver {
     return finish(SolveStatus::kBudgetSpent, problem, trajectory, report);
   }
 
+  /// Resets the state of a solve.
   CHICANE_INLINE void begin() noexcept {
     full_steps_ = is_fresh_ = true;
     has_best_ = shows_best_ = is_exact_ = has_grown_ = false;
@@ -194,6 +197,7 @@ class OcpSolver {
     course_ = {};
     descent_.start();
   }
+  /// Starts at the guess. False if the data are not finite or bounds cross.
   bool start(const P& problem, const State& x0, const Trajectory& trajectory) noexcept {
     begin();
     target_ = static_cast<std::size_t>(trajectory.horizon);
@@ -215,11 +219,11 @@ class OcpSolver {
     barrier_.start(problem, final_barrier(problem), Evaluate::violation(problem, t_));
     return is_good;
   }
-  /// Final barrier of soft constraints. With rows that must hold it is so low that all of it together costs
-  /// no more than the tolerance.
+  /// Final barrier of soft constraints. With hard constraints it is so low that all barriers together cost no
+  /// more than the tolerance.
   [[nodiscard]] double final_barrier([[maybe_unused]] const P& problem) const noexcept {
     if constexpr (kHasHardRows<P>) {
-      constexpr double kLeast = 1e-11;  // below it slopes are all rounding
+      constexpr double kLeast = 1e-11;  // least barrier: below it slopes are all rounding
       const std::size_t count = constraint_count(problem);
       bool must_hold = false;
       for (std::size_t c = 0; c < count; ++c) must_hold = must_hold || problem.keeps(c);
@@ -228,7 +232,7 @@ class OcpSolver {
     }
     return options_.tolerance;
   }
-  /// The inputs of the warm start, with its states or simulated; inputs of zero where that diverges.
+  /// Takes the inputs of the warm start, with its states or simulated ones; inputs of zero if that diverges.
   bool take_guess(const P& problem, const Trajectory& trajectory) noexcept {
     t_.horizon = target_;
     for (std::size_t m = 0; m < kNu; ++m) {
@@ -241,14 +245,15 @@ class OcpSolver {
     if (kCanFilter) hold_states();
     return kCanFilter;
   }
+  /// Takes inputs of zero and the first state everywhere.
   void hold_states() noexcept {
     fill_inputs();
     stands_still_ = true;
     for (std::size_t i = 0; i < kNx; ++i) std::fill(t_.x[i] + 1, t_.x[i] + t_.horizon + 1, t_.x[i][0]);
   }
-  /// A simulation whose functions are not finite somewhere: the first state everywhere may be better. Once.
+  /// Takes hold_states() for a simulation whose functions are not finite. False if that was done before.
   bool stand_still(const P& problem, const SolveReport& report) noexcept;
-  /// The states of the warm start from x_1 on. False when one is not finite.
+  /// Takes the states of the warm start from x_1 on. False if one is not finite.
   bool take_states(const Trajectory& trajectory) noexcept {
     double sum = 0.0;
     for (std::size_t k = 1; k <= t_.horizon; ++k) {
@@ -272,7 +277,7 @@ class OcpSolver {
         trajectory.u[k][m] = nearest(trajectory.u[k][m], now_.lower[m][k], now_.upper[m][k]);
     }
   }
-  /// Inputs of zero, or their bounds.
+  /// Sets inputs to zero, or to the nearest bound.
   void fill_inputs() noexcept {
     for (std::size_t m = 0; m < kNu; ++m) {
       for (std::size_t k = 0; k < t_.horizon; ++k)
@@ -282,7 +287,8 @@ class OcpSolver {
   /// Simulates the inputs from x_0. True when every state is finite.
   bool roll_out(const P& problem) noexcept { return RollOut<P, Arch>::run(problem, t_); }
 
-  /// Linearises and measures. Slacks start on the central path, and return to it while the cost descends.
+  /// Linearises at the present point and sets the report. Slacks start on the central path, and return to it
+  /// in descents.
   void linearise(const P& problem, SolveReport& report) noexcept {
     const bool centre = is_fresh_ || !full_steps_;
     const double share = std::max(kDefectShare * options_.tolerance, kDefectFloor);
@@ -311,14 +317,14 @@ class OcpSolver {
 
   // ---- full steps
 
-  /// Hessians of the present linearisation become Gauss–Newton's.
+  /// Linearises again with Gauss–Newton's Hessians.
   void take_gauss_newton(const P& problem) noexcept {
     is_exact_ = false;
     SolveReport unused;
     linearise(problem, unused);
   }
 
-  /// Takes the whole step of the quadratic program. False at the deadline, or where nothing helps.
+  /// Takes the whole step of the quadratic program. False at the deadline, or if no recovery succeeds.
   bool full_step(const P& problem, const Trajectory& trajectory, const Deadline& deadline,
                  SolveReport& report) noexcept {
     using Outcome = typename WorkingSetQp<Lq>::Outcome;
@@ -336,16 +342,16 @@ class OcpSolver {
     is_exact_ = options_.second_order && ((longest <= kNear && curvature_pays()) || is_crawling());
     return true;
   }
-  /// Structured problems have second derivatives almost for free. Dense ones cost as much as several
-  /// iterations: only where Gauss–Newton needs more than that.
+  /// Whether exact Hessians save time: always for structured problems, whose second derivatives cost little;
+  /// for dense ones if Gauss–Newton needs more iterations than they cost.
   [[nodiscard]] bool curvature_pays() const noexcept {
-    constexpr double kIterations = 6.0;  // iterations to the tolerance that cost less
+    constexpr double kIterations = 6.0;  // cost of exact Hessians in iterations, about; chosen
     return has_cheap_curvature<P>() || progress_.is_slow(0.1 * options_.tolerance, kIterations);
   }
-  /// Gauss–Newton would need tens of iterations, or the filter method has brought a point near the solution:
-  /// whatever the units of the inputs.
+  /// Whether Gauss–Newton would need tens of iterations, or the filter method has found a point near the
+  /// solution. Does not depend on the units of the inputs.
   [[nodiscard]] bool is_crawling() const noexcept {
-    constexpr double kIterations = 20.0;
+    constexpr double kIterations = 20.0;  // chosen
     return kCanFilter && (has_filtered_ || only_full_steps_ ||
                           (barrier_.is_final() && progress_.is_slow(0.1 * options_.tolerance, kIterations)));
   }
@@ -360,17 +366,22 @@ class OcpSolver {
     }
     return may_grow() ? start_short(problem, trajectory) : go_back(problem);
   }
+  /// Starts the filter method. False if it cannot start.
   bool begin_filter(const P& problem, const Trajectory& trajectory, SolveReport& report) noexcept;
+  /// Perturbs the start by rounding-like amounts.
   void break_symmetry() noexcept;
+  /// One iteration of the filter method. False at its end without a solution.
   bool filter_iteration(const P& problem, const Deadline& deadline, SolveReport& report) noexcept;
   void record_filter_iteration(const SolveReport& report) noexcept;
+  /// Answers without a solution by the cheapest known point.
   void take_cheapest(const P& problem, const Trajectory& trajectory, SolveReport& report) noexcept;
+  /// Whether steps are as short as rounding permits.
   bool is_at_floor(const SolveReport& report) noexcept;
 
   // ---- globalisation
 
-  /// Whether this is the best iterate so far: by its residuals while steps are full, the latest one while the
-  /// cost descends. Keeps it then.
+  /// Keeps the present iterate if it is the best so far: the one of least residual while steps are full, the
+  /// latest one in a descent. True if it is.
   bool keep_best(const SolveReport& report) noexcept {
     if (!is_finite(report)) return false;
     if (full_steps_ && has_best_ && !progress_.is_good() && residual(report) >= residual(best_report_))
@@ -382,16 +393,17 @@ class OcpSolver {
     return true;
   }
 
-  /// Steps have not improved for a while, or left the finite numbers.
+  /// Whether full steps have not become shorter for a while, or the iterate is not finite.
   [[nodiscard]] bool has_lost_its_way(const SolveReport& report) const noexcept {
     return !is_finite(report) || (full_steps_ && progress_.is_lost());
   }
+  /// Whether full steps make cost and defects worse.
   bool goes_astray(const SolveReport& report) noexcept {
     return options_.may_start_short && full_steps_ && !has_grown_ && !has_filtered_ &&
            (kCanFilter || barrier_.is_final()) && course_.leads_astray(report.cost, report.defect);
   }
 
-  /// Back to the best iterate, to descend from there. False when its inputs cannot be simulated.
+  /// Returns to the best iterate, to descend from there. False if its inputs cannot be simulated.
   bool go_back(const P& problem) noexcept {
     if (!full_steps_) descent_.damp();
     full_steps_ = is_exact_ = false;
@@ -403,8 +415,8 @@ class OcpSolver {
     return descent_.simulate(problem, lq_, barrier_, t_) || roll_out(problem);
   }
 
-  /// The second rung: solve a short horizon first and let it grow. Short problems are easy, and each is a
-  /// good start for the next one.
+  /// Whether the horizon is still shorter than the problem's: short problems are easier, and each is a good
+  /// start for the next one.
   [[nodiscard]] bool is_growing() const noexcept { return t_.horizon < target_; }
   [[nodiscard]] bool may_grow() const noexcept {
     return options_.may_start_short && !has_grown_ && t_.horizon > kFirstHorizon;
@@ -413,23 +425,27 @@ class OcpSolver {
   [[nodiscard]] double share_of_horizon() const noexcept {
     return static_cast<double>(t_.horizon) / static_cast<double>(target_);
   }
+  /// Starts again with a short horizon.
   bool start_short(const P& problem, const Trajectory& trajectory) noexcept;
+  /// Extends the horizon; the last input is repeated.
   bool grow(const P& problem) noexcept;
+  /// Starts full steps at the simulated present inputs.
   bool restart(const P& problem) noexcept;
 
-  /// The last rung: one step that lowers the cost. False when there is none.
+  /// Takes one step that lowers the cost. False if there is none.
   bool descend(const P& problem, const Deadline& deadline, SolveReport& report) noexcept;
 
   // ---- endings
 
-  /// Whether the report is within the loose tolerance, the barrier included, which complementarity lacks to
-  /// zero.
+  /// Whether residuals and barrier are within the loose tolerance.
   [[nodiscard]] bool is_close(const SolveReport& report) const noexcept {
     const double gap = kCanFilter && barrier_.count() > 0 ? barrier_.mu() : 0.0;
     const double digits = kCanFilter ? kRounding * std::fabs(report.cost) : 0.0;  // rounding of a cost
     return std::max({residual(report), gap, digits}) <= options_.loose_tolerance;
   }
-  void look_at_best(const P& problem, SolveReport& report) noexcept;
+  /// Linearises at the best iterate.
+  void linearise_best(const P& problem, SolveReport& report) noexcept;
+  /// Returns the best iterate with its report.
   SolveReport finish(SolveStatus status, const P& problem, Trajectory& trajectory,
                      SolveReport report) noexcept;
   SolveReport give_up(const P& problem, const State& x0, Trajectory& trajectory, SolveReport report) noexcept;
@@ -439,33 +455,33 @@ class OcpSolver {
   Lq lq_;                              ///< quadratic program there
   WorkingSetQp<Lq> qp_;                ///< solver of that program
   using Slacks = Barrier<P, kSize, Arch>;
-  Slacks barrier_;
+  Slacks barrier_;  ///< soft constraints
   Descent<P, kSize, Arch> descent_;
-  Progress progress_;
-  Course course_;
+  Progress progress_;  ///< lengths of full steps
+  Course course_;      ///< cost and defects of full steps
   using Filter = FilterMethod<P, kSize, Arch>;
   std::conditional_t<kCanFilter, Filter, Nothing> filter_;
-  Iterate<kNx, kNu, kSize> t_;     ///< the present iterate
+  Iterate<kNx, kNu, kSize> t_;     ///< present iterate
   Iterate<kNx, kNu, kSize> step_;  ///< step to the next iterate
-  Iterate<kNx, kNu, kSize> best_;
-  SolveReport best_report_{};
-  IterationLog* log_ = nullptr;
-  bool has_best_ = false;
-  bool shows_best_ = false;  ///< the last linearisation was at the best iterate
-  bool full_steps_ = true;
-  bool is_exact_ = false;  ///< Hessians of the next linearisation
-  bool has_grown_ = false;
-  bool is_filtering_ = false;     ///< steps are the filter method's
-  bool has_filtered_ = false;     ///< filter method was used in this solve
-  bool stands_still_ = false;     ///< the start could not be simulated
-  bool is_again_ = false;         ///< the start is near the solution
-  bool only_full_steps_ = false;  ///< a solve ends where full steps fail
-  bool is_fresh_ = true;          ///< slacks and working set must be guessed
-  std::size_t target_ = 0;        ///< horizon asked for
-  double work_ = 0.0;             ///< iterations so far, weighted by share of horizon
-  std::conditional_t<kHasHardRows<P>, Iterate<kNx, kNu, kSize>, Nothing> kept_;
-  std::conditional_t<kHasHardRows<P>, typename Slacks::Memory, Nothing> kept_slacks_;
-  std::conditional_t<kCanFilter, typename Slacks::Memory, Nothing> best_slacks_;  ///< of the best iterate
+  Iterate<kNx, kNu, kSize> best_;  ///< best iterate so far
+  SolveReport best_report_{};      ///< report of the best iterate
+  IterationLog* log_ = nullptr;    ///< record_iterations()
+  bool has_best_ = false;          ///< whether there is a best iterate
+  bool shows_best_ = false;        ///< whether the last linearisation was at the best iterate
+  bool full_steps_ = true;         ///< full steps, else descent
+  bool is_exact_ = false;          ///< whether the next linearisation has exact Hessians
+  bool has_grown_ = false;         ///< whether this solve has started with a short horizon
+  bool is_filtering_ = false;      ///< whether the filter method makes the steps
+  bool has_filtered_ = false;      ///< whether this solve has used the filter method
+  bool stands_still_ = false;      ///< whether the start could not be simulated
+  bool is_again_ = false;          ///< whether the start is near the solution
+  bool only_full_steps_ = false;   ///< take_only_full_steps()
+  bool is_fresh_ = true;           ///< whether slacks and working set must be guessed
+  std::size_t target_ = 0;         ///< horizon of the problem
+  double work_ = 0.0;              ///< iterations so far, weighted by their share of the horizon
+  std::conditional_t<kHasHardRows<P>, Iterate<kNx, kNu, kSize>, Nothing> kept_;        ///< keep_point()
+  std::conditional_t<kHasHardRows<P>, typename Slacks::Memory, Nothing> kept_slacks_;  ///< slacks of kept_
+  std::conditional_t<kCanFilter, typename Slacks::Memory, Nothing> best_slacks_;       ///< slacks of best_
 };
 
 }  // namespace chicane::solver

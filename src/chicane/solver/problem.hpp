@@ -12,6 +12,9 @@
 #include "chicane/base/pack.hpp"
 #include "chicane/solver/detail/problem_check.hpp"
 
+/// What a user of the solver writes and gets: the concept of an optimal control problem, soft penalties,
+/// options and trajectories. The solver is in ocp_solver.hpp.
+
 namespace chicane::solver {
 
 /// Several consecutive stages at once, one in each lane of the pack V: stage `first` in lane 0. Functions of
@@ -21,8 +24,9 @@ struct StageLanes {
   int first = 0;
 };
 
-/// Values of stages without lanes behind the last one: no lane ever reads beyond the array.
+/// Largest number of lanes of a pack.
 inline constexpr std::size_t kMostLanes = 8;
+/// Length of an array of `count` values that any pack may read to its end.
 [[nodiscard]] constexpr std::size_t padded_stages(std::size_t count) noexcept {
   return (count + kMostLanes - 1) / kMostLanes * kMostLanes;
 }
@@ -98,12 +102,12 @@ template <class V>
 /// fine. All functions of jet.hpp are found by their arguments; what variables cannot
 /// do is refused in few lines (symbol.hpp);
 /// - model code over one type T (`struct Motion<T>`) runs on T = Common<A, B, …> of the variables it uses;
-/// - what is computed from x_k and u_k but needs no memory is an output, not a state: put it into residual();
+/// - quantities that follow from x_k and u_k are outputs, not states: put them into residual();
 /// - next_state() and roll_out() call them with numbers;
 /// - they are called from several places: without CHICANE_INLINE on them and on what they call, jets
 /// may go through memory.
 ///
-/// **What must hold exactly**, equalities and constraints at the end among it: hard_constraints.hpp.
+/// **Constraints that must hold exactly**, equalities and terminal ones among them: hard_constraints.hpp.
 ///
 /// A stage may have at most 24 variables (states and inputs); about 60 where the functions are over arrays,
 /// as in level 1 with `class K`, and `static constexpr bool kGaussNewton = true`. All functions are called on
@@ -132,25 +136,25 @@ template <class T, class Row>
   return std::apply([](const auto&... values) { return std::array<T, sizeof...(values)>{T(values)...}; },
                     row);
 }
-/// A number that knows the functions of models, as jets do.
+/// A number with the functions of jets, without derivatives.
 using Plain = Jet<double, 1, 0>;
 
 /// Concept of a problem; detail/problem_check.hpp checks it with messages that name the remedy.
 template <class P>
 concept OcpProblem = detail::is_problem<P>();
 
-/// Level 2 of the interface.
+/// Concept of a problem of level 2.
 template <class P>
 concept StructuredProblem = OcpProblem<P> && detail::TakesSymbols<P>;
 
-/// Number of a problem's kNc soft constraints in use: all, unless it returns a number at run time.
+/// Number of a problem's kNc soft constraints in use: all, unless it has a function constraint_count().
 template <class P>
 [[nodiscard]] constexpr std::size_t constraint_count(const P& problem) noexcept {
   if constexpr (requires { problem.constraint_count(); }) return problem.constraint_count();
   return static_cast<std::size_t>(P::kNc);
 }
 
-/// x_{k+1} of plain numbers (or any one scalar type), whatever the level.
+/// x_{k+1} for numbers (or any one scalar type), for problems of both levels.
 template <class T, OcpProblem P>
 [[nodiscard]] std::array<T, P::kNx> next_state(const P& problem, int k, const std::array<T, P::kNx>& x,
                                                const std::array<T, P::kNu>& u) {
@@ -166,9 +170,9 @@ template <class T, OcpProblem P>
 
 /// Penalty of violating a soft constraint c <= 0 by s > 0: linear · s + ½ quadratic · s².
 struct SoftPenalty {
-  double linear = 500.0;
-  double quadratic = 200.0;
-  double cap = 1e30;  ///< a converged violation above this is reported as kInfeasible
+  double linear = 500.0;     ///< cost over violation
+  double quadratic = 200.0;  ///< cost over half of the squared violation
+  double cap = 1e30;         ///< violation of a converged solution above which it is reported as kInfeasible
 };
 
 /// States x_0..x_N and inputs u_0..u_{N-1} of a horizon of N <= Capacity intervals.
@@ -184,17 +188,18 @@ struct Trajectory {
 
 /// Options of the solver. Defaults suit control at 10–100 Hz.
 struct SolverOptions {
-  double tolerance = 1e-6;        ///< stationarity accepted as optimal; (0, 1e-2]. What must hold holds
-                                  ///< within it in every usable answer
+  double tolerance = 1e-6;        ///< stationarity accepted as optimal; (0, 1e-2]. Largest violation of hard
+                                  ///< constraints in a usable answer
   double loose_tolerance = 1e-2;  ///< stationarity accepted when the budget is spent; [tolerance, 1e3]
-  int max_iterations = 1000;    ///< limit of SQP iterations, with the share of a shorter horizon; worst-case
-                                ///< time is proportional to it; [1, 10000]. Controllers set less
-  bool may_start_short = true;  ///< permits the filter method after failing full steps, or for kRealTime a
-                                ///< growing horizon: reaches optima from poor guesses, at the cost of tens of
-                                ///< iterations; off where the budget is a few iterations
-  bool start_from_states = false;  ///< a warm start's states count, too, where they are finite: the first
-                                   ///< steps close their gaps. For systems that are unstable, whose simulated
-                                   ///< guess would run away
+  int max_iterations = 1000;  ///< limit of SQP iterations, with the share of a shorter horizon; worst-case
+                              ///< time is proportional to it; [1, 10000]. Controllers set less
+  /// Permits the filter method after failing full steps, or for kRealTime a growing horizon. Both reach
+  /// optima from poor guesses, at the cost of tens of iterations; switch it off for budgets of a few
+  /// iterations.
+  bool may_start_short = true;
+  /// Starts from the states of the warm start if they are finite; the first steps close their gaps. For
+  /// unstable systems, whose simulated guess would diverge.
+  bool start_from_states = false;
   bool second_order = true;  ///< exact Hessians near the solution: fewer iterations, costlier iterations
 };
 

@@ -9,6 +9,8 @@
 #include "chicane/base/compiler.hpp"
 #include "chicane/base/text.hpp"
 
+/// Outcome of a solve: status and report.
+
 namespace chicane::solver {
 
 /// The table of SolveStatus. Columns: enumerator, number, name, severity, sentence (base/text.hpp).
@@ -16,9 +18,9 @@ namespace chicane::solver {
 #define CHICANE_SOLVE_STATUSES(ROW)                                                                              \
   /* all residuals <= tolerance */                                                                               \
   ROW(kOptimal, 0, "optimal", kOk, "the solver converged")                                                       \
-  /* deadline or max_iterations reached; input bounds and what must hold do, residuals <= loose_tolerance */     \
+  /* deadline or max_iterations reached; bounds and hard constraints hold, residuals <= loose_tolerance */       \
   ROW(kBudgetSpent, 1, "budget_spent", kOk, "the solver stopped at its limit, close enough to the optimum")       \
-  /* steps are as short as rounding lets them; a residual above tolerance is what is left of it */               \
+  /* steps as short as rounding permits; residuals may be above tolerance */                                     \
   ROW(kAtFloor, 2, "at_floor", kOk, "the solver converged as far as rounding allows")                            \
   /* no further progress, or budget spent, before loose_tolerance */                                             \
   ROW(kStalled, -1, "stalled", kError, "the solver did not converge")                                            \
@@ -38,6 +40,7 @@ enum class SolveStatus : std::int8_t { CHICANE_SOLVE_STATUSES(CHICANE_ENUMERATOR
 inline constexpr std::array kSolveStatusWords{CHICANE_SOLVE_STATUSES(CHICANE_WORD)};
 #undef CHICANE_WORD
 
+/// Whether the solution may be used.
 [[nodiscard]] constexpr bool usable(SolveStatus status) noexcept { return static_cast<int>(status) >= 0; }
 [[nodiscard]] constexpr std::string_view to_string(SolveStatus status) noexcept {
   const Word<SolveStatus>* const word = find_word<SolveStatus>(kSolveStatusWords, status);
@@ -53,24 +56,27 @@ struct SolveReport {
   double stationarity = 0.0;     ///< dual residual: ‖u − Proj(u − ∇L)‖∞ from the exact adjoint
   double defect = 0.0;           ///< primal residual: ‖x_{k+1} − f(x_k, u_k)‖∞
   double complementarity = 0.0;  ///< largest residual of the soft constraints' KKT block
-  double violation = 0.0;  ///< largest soft-constraint violation, in the constraint's own unit; of those
-                           ///< above their caps, where one is
-  int worst_stage = -1;    ///< stage of the worst violation; -1 if nothing is violated
-  int worst_constraint = -1;
-  double gap = 0.0;  ///< complementarity gap Σ (t z + s n) of the soft constraints: what the barrier costs,
-                     ///< at most in a convex problem
+  /// Largest violation of a soft constraint, in the constraint's unit; violations above their caps come
+  /// first.
+  double violation = 0.0;
+  int worst_stage = -1;       ///< stage of that violation; -1 if nothing is violated
+  int worst_constraint = -1;  ///< constraint of that violation; -1 if nothing is violated
+  /// Complementarity gap Σ (t z + s n) of the soft constraints: in a convex problem the barrier costs no
+  /// more.
+  double gap = 0.0;
 };
 
 /// Report of OcpSolver::feedback.
 struct FeedbackReport {
-  bool is_solved = false;  ///< the quadratic program is; else inputs were cut to their bounds
-  int sweeps = 0;          ///< Riccati sweeps backwards that a change of active bounds took
+  bool is_solved = false;  ///< whether the quadratic program is solved; else inputs were cut to their bounds
+  int sweeps = 0;          ///< backward Riccati sweeps for changes of active bounds
 };
 
-/// Finds the violation for a report: the largest, but one above its cap before all others, which may have
-/// other units.
+/// Search of the violation for a report: the largest one above its cap, or the largest of all if none is.
+/// Units of constraints differ, so that caps come first.
 class WorstViolation {
  public:
+  /// Adds the violation of a constraint at a stage.
   CHICANE_INLINE void consider(double value, double cap, std::size_t stage, std::size_t constraint) noexcept {
     const bool is_above = value > cap;
     const bool is_worse = is_above == is_above_ ? value > value_ : is_above;
@@ -81,6 +87,7 @@ class WorstViolation {
     constraint_ = static_cast<int>(constraint);
   }
   [[nodiscard]] CHICANE_INLINE bool is_above_a_cap() const noexcept { return is_above_; }
+  /// Sets violation, stage and constraint of the report.
   CHICANE_INLINE void tell(SolveReport& report) const noexcept {
     report.worst_stage = stage_;
     report.worst_constraint = constraint_;
@@ -88,8 +95,8 @@ class WorstViolation {
   }
 
  private:
-  double value_ = 0.0;
-  bool is_above_ = false;
+  double value_ = 0.0;     ///< worst violation so far
+  bool is_above_ = false;  ///< whether it is above its cap
   int stage_ = -1;
   int constraint_ = -1;
 };

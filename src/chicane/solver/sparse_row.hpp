@@ -8,15 +8,14 @@
 #include "chicane/base/compiler.hpp"
 #include "chicane/base/pack.hpp"
 
+/// Rows of a problem whose pattern is known at run time, not at compile time: for problems that come as data,
+/// such as those written in Python. Such a problem has `static constexpr bool kHasSparseRows = true`. For
+/// derivatives its functions are called with arrays of SparseSeed and return arrays of SparseRow; all else is
+/// as in level 1.
+
 namespace chicane::solver {
 
-/// Rows of a problem whose pattern is known when the program runs, not when it is compiled: for problems that
-/// come as data, such as those written in Python. Such a problem says `static constexpr bool kHasSparseRows =
-/// true`, and its functions are called with arrays of SparseSeed where derivatives are wanted, and return
-/// arrays of SparseRow then. They are level 1 in all else.
-
-/// A variable of a stage (or of eight, where V is a pack) of whose functions derivatives up to Order are
-/// wanted.
+/// A variable of a stage (of eight stages, if V is a pack) for functions with derivatives up to Order.
 template <class V, int Order>
 struct SparseSeed {
   V v;
@@ -29,18 +28,18 @@ struct SparseEntry {
   std::uint32_t slot = 0;  ///< index into SparseRow::slots
 };
 
-/// Value and derivatives of one row. What it points to belongs to the problem, and is valid until the same
-/// function is called again.
+/// Value and derivatives of one row. Its pointers are to memory of the problem, valid until the next call of
+/// the same function.
 template <class V>
 struct SparseRow {
   static constexpr bool kIsDense = true;  // rows are looped over
   static constexpr bool kIsSparse = true;
 
   V v{0.0};
-  V scale{1.0};              ///< factor of all derivatives
-  const V* slots = nullptr;  ///< null: the row is not there, and counts for nothing
-  const SparseEntry* slopes = nullptr;
-  const SparseEntry* curvatures = nullptr;
+  V scale{1.0};                             ///< factor of all derivatives
+  const V* slots = nullptr;                 ///< derivatives; null for a row that the problem does not have
+  const SparseEntry* slopes = nullptr;      ///< places of the first derivatives
+  const SparseEntry* curvatures = nullptr;  ///< places of the second derivatives
   std::uint32_t slope_count = 0;
   std::uint32_t curvature_count = 0;
   std::uint32_t stride = 1;  ///< distance between slots
@@ -81,7 +80,7 @@ concept AnySparseRow = requires {
   requires Row::kIsSparse;
 };
 
-/// Whether a problem's rows are such.
+/// Whether a problem has sparse rows.
 template <class P>
 inline constexpr bool kHasSparseRows = requires {
   requires P::kHasSparseRows;

@@ -9,9 +9,11 @@
 #include "chicane/base/compiler.hpp"
 #include "chicane/solver/problem.hpp"
 
+/// Guesses for the next solve: clamped inputs, their simulation, and shifted or resampled trajectories.
+
 namespace chicane::solver {
 
-/// Moves every input into its bounds. One that is not a number becomes the admissible value nearest to zero.
+/// Moves every input into its bounds. Inputs that are not finite become the admissible value nearest to zero.
 template <OcpProblem P, int Capacity>
 CHICANE_INLINE inline void clamp_inputs(const P& problem,
                                         Trajectory<P::kNx, P::kNu, Capacity>& trajectory) noexcept {
@@ -41,8 +43,8 @@ bool roll_out(const P& problem, const std::array<double, P::kNx>& x0,
   return finite;
 }
 
-/// Resamples a motion to another grid: `horizon` intervals, each `ratio` times as long as before.
-/// Interpolates between the old points, and repeats the last ones behind them. Pre: horizon in [1, Capacity],
+/// Resamples a trajectory to another grid: `horizon` intervals, each `ratio` times as long as before.
+/// Interpolates between the old points, and repeats the last one beyond them. Pre: horizon in [1, Capacity],
 /// ratio > 0.
 template <int Nx, int Nu, int Capacity>
 void resample(Trajectory<Nx, Nu, Capacity>& trajectory, int horizon, double ratio) noexcept {
@@ -63,9 +65,8 @@ void resample(Trajectory<Nx, Nu, Capacity>& trajectory, int horizon, double rati
   blend(old.x, trajectory.x, old.horizon, horizon);
 }
 
-/// The same inputs and states `steps` intervals later (fractions interpolate; zero-order hold); the last ones
-/// are repeated. Used between control cycles: steps = elapsed time / interval. Negative or non-finite `steps`
-/// count as 0.
+/// Shifts inputs and states to `steps` intervals later (fractions interpolate); the last ones are repeated.
+/// Used between control cycles: steps = elapsed time / interval. Negative or non-finite `steps` count as 0.
 template <int Nx, int Nu, int Capacity>
 void shift(Trajectory<Nx, Nu, Capacity>& trajectory, double steps) noexcept {
   if (trajectory.horizon < 1 || !(steps > 0.0) || !std::isfinite(steps)) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Finds the road in a map: joins cells, measures distances to walls, picks the loop round an infield, and
-// moves its line to the middle.
+// Finds the road in an occupancy map: coarsens the map, measures distances to walls, finds the cheapest loop
+// round an infield, moves its line to the middle and measures its widths.
 #include "chicane/survey/free_space.hpp"
 
 #include <fmt/format.h>
@@ -23,19 +23,42 @@ constexpr std::size_t kMostCoarse = 1'000'000;  // limit of cells of the search:
 constexpr double kLeastInfield = 1.0;           // [m] least diagonal of an infield; chosen
 constexpr double kMostReach = 1.6;  // widest side of the road over its clearance: pockets are no road; chosen
 constexpr int kRounds = 40;         // rounds of moving the line to the middle; chosen
-constexpr std::size_t kLeastLine = 8;  // least points of a way round
+constexpr std::size_t kLeastLine = 8;  // least points of a way round; chosen: fewer are no road with bends
 
 /// Road round an obstacle, on the coarse grid.
 struct Ring {
-  Mask road;
+  Mask road;                 ///< cells of the road
   std::size_t centre = 0;    ///< rightmost cell of the obstacle
-  double infield = 0.0;      ///< diagonal of the obstacle without the clearance [cells]
-  bool is_at_border = true;  ///< the road reaches the edge of the map
+  double infield = 0.0;      ///< diagonal of the obstacle without the clearance [coarse cells]
+  bool is_at_border = true;  ///< whether the road reaches the edge of the map
 };
 
-/// Search of the loop, in steps: join cells of the map to a fine grid and measure distances to walls; find
-/// the road round the largest infield on a coarse grid; find the cheapest way round; move it to the middle;
-/// measure the widths. Places are in fine cells unless a name says otherwise.
+/// Cheapest ways from one cell, the gate, to all cells of a road on the coarse grid.
+struct Ways {
+  std::vector<float> cell_cost;    ///< cost of a unit of length in a cell: more near walls
+  std::vector<float> cost;         ///< cost of the way to a cell; infinite where there is none
+  std::vector<std::int8_t> turns;  ///< turns of the way round the obstacle, counter-clockwise positive
+  std::vector<std::int8_t> back;   ///< number in kNeighbours of the way's last step; -1: none
+
+  /// Cost of a step from cell a to cell b, its n-th neighbour.
+  [[nodiscard]] float step_cost(std::size_t a, std::size_t b, int n) const {
+    return 0.5F * (cell_cost[a] + cell_cost[b]) * (n < 4 ? 1.0F : 1.41421356F);
+  }
+};
+constexpr float kUnreached = std::numeric_limits<float>::infinity();  // Ways::cost without a way
+
+/// Turn round the cell `centre` that a step from a cell to its n-th neighbour makes: 1 or -1 where the step
+/// crosses the ray from the centre to the right, counter-clockwise or clockwise, and else 0.
+int turn_of(const Place& centre, const Place& from, int n) {
+  const Place& step = kNeighbours[n];
+  if (from.x + 0.5 * step.x <= centre.x) return 0;
+  if (from.y == centre.y && step.y == 1) return 1;
+  return from.y == centre.y + 1 && step.y == -1 ? -1 : 0;
+}
+
+/// Search of the loop. The map is coarsened twice: to the fine grid, which holds walls and distances, and to
+/// the coarse grid, on which ways are searched. Positions and lengths are in fine cells unless a name or a
+/// comment says otherwise.
 class LoopFinder {
  public:
   LoopFinder(const FreeSpace& space, const LoopOptions& options) : space_{space}, options_{options} {
@@ -51,20 +74,19 @@ class LoopFinder {
     coarse_ = {std::max(1, fine_.width / stride_), std::max(1, fine_.height / stride_)};
   }
 
+  /// The loop, or why there is none.
   Result<FreeLoop> find() {
-    block();
+    measure_walls();
     const double clearance = 0.5 * options_.least_width / cell_;
     const std::optional<Ring> ring = find_ring(clearance);
-    if (!ring) return fail(ErrorCode::kParse, why_none());
-    std::vector<Vec2> line = way_round(*ring);
+    std::vector<Vec2> line = ring ? way_round(*ring) : std::vector<Vec2>{};
     if (line.size() < kLeastLine) return fail(ErrorCode::kParse, why_none());
-    line = moved_to_the_middle(std::move(line));
-    return measured(line);
+    return measured(moved_to_the_middle(std::move(line)));
   }
 
  private:
-  /// Joins cells to the fine grid, where a cell is blocked if any of its parts is, and measures distances.
-  void block() {
+  /// Fills the fine grid, where a cell is blocked if any of its cells of the map is, and measures distances.
+  void measure_walls() {
     blocked_.assign(fine_.size(), 0);
     for (int y = 0; y < fine_.height * join_ && y < space_.height; ++y)
       for (int x = 0; x < fine_.width * join_ && x < space_.width; ++x) {
@@ -76,7 +98,7 @@ class LoopFinder {
     field_ = distance_field(blocked_, fine_.width, fine_.height);
   }
 
-  /// Frees small blocked spots inside free space, which are noise.
+  /// Frees small obstacles, which are noise of the map.
   void remove_spots() {
     spots_ = 0;
     std::vector<int> labels;
@@ -92,7 +114,7 @@ class LoopFinder {
       if (labels[i] != 0 && is_noise[static_cast<std::size_t>(labels[i])] != 0) blocked_[i] = 0;
   }
 
-  /// Distance from a coarse cell to the nearest wall [cells].
+  /// Distance from a coarse cell to the nearest wall [fine cells].
   [[nodiscard]] double clearance_at(std::size_t coarse) const {
     const Place at = coarse_.place(coarse);
     const int x = std::min(fine_.width - 1, at.x * stride_ + stride_ / 2);
@@ -100,8 +122,8 @@ class LoopFinder {
     return static_cast<double>(field_[fine_.at(x, y)]) - 0.5;
   }
 
-  /// Road of at least `clearance` [cells] to each side that goes round the largest infield; roads that do not
-  /// reach the edge of the map come first.
+  /// Road of at least `clearance` [fine cells] to each side that leads round the largest infield. Roads that
+  /// do not reach the edge of the map come first, because the room outside of a course often does.
   std::optional<Ring> find_ring(double clearance) {
     Mask passable(coarse_.size(), 0);
     for (std::size_t i = 0; i < passable.size(); ++i) passable[i] = clearance_at(i) >= clearance ? 1 : 0;
@@ -132,15 +154,14 @@ class LoopFinder {
     return best;
   }
 
-  /// The road `label` round its largest hole; none without a hole.
+  /// Road made of the cells with `label`, round its largest hole; none without a hole.
   std::optional<Ring> ring_of(const std::vector<int>& labels, int label, bool is_at_border,
                               double clearance) const {
     Ring ring{.road = Mask(coarse_.size(), 0), .is_at_border = is_at_border};
-    Mask others(coarse_.size(), 1);
+    Mask others(coarse_.size());
     for (std::size_t i = 0; i < labels.size(); ++i) {
-      if (labels[i] != label) continue;
-      ring.road[i] = 1;
-      others[i] = 0;
+      ring.road[i] = labels[i] == label ? 1 : 0;
+      others[i] = labels[i] == label ? 0 : 1;
     }
     std::vector<int> holes;
     for (const Region& hole : regions_of(others, coarse_, 4, holes)) {
@@ -152,6 +173,7 @@ class LoopFinder {
     return ring.infield > 0.0 ? std::optional<Ring>(std::move(ring)) : std::nullopt;
   }
 
+  /// Coarse cell at a position.
   [[nodiscard]] std::size_t coarse_of(const Vec2& fine) const {
     const auto clamped = [](double value, int most) {
       return static_cast<int>(std::clamp(value, 0.0, most - 1.0));
@@ -167,116 +189,96 @@ class LoopFinder {
     double most = -1.0;
     for (int x = centre.x + 1; x < coarse_.width; ++x) {
       const std::size_t index = coarse_.at(x, centre.y);
-      if (ring.road[index] == 0) {
-        if (most >= 0.0) break;
-        continue;
-      }
-      if (clearance_at(index) > most) {
-        most = clearance_at(index);
-        best = index;
-      }
+      const bool is_road = ring.road[index] != 0;
+      if (!is_road && most >= 0.0) break;
+      if (!is_road || clearance_at(index) <= most) continue;
+      most = clearance_at(index);
+      best = index;
     }
     return best;
   }
 
-  /// Cheapest way from the gate round the obstacle and back (Dijkstra). A step costs its length, and more
-  /// near walls. Turns round the obstacle are counted where a way crosses the ray from the obstacle to the
-  /// right.
+  /// Cheapest ways from the gate on the road (Dijkstra). A step costs its length, and more near walls.
+  [[nodiscard]] Ways ways_from(std::size_t gate, const Ring& ring) const {
+    const Place centre = coarse_.place(ring.centre);
+    const double roomy = std::max(1.0, clearance_at(gate));
+    const std::size_t size = coarse_.size();
+    Ways ways{std::vector<float>(size, 0.0F), std::vector<float>(size, kUnreached),
+              std::vector<std::int8_t>(size, 0), std::vector<std::int8_t>(size, -1)};
+    for (std::size_t i = 0; i < size; ++i) {
+      if (ring.road[i] == 0) continue;
+      const double near = roomy / std::max(0.5, clearance_at(i));
+      ways.cell_cost[i] = static_cast<float>(1.0 + near * near);
+    }
+    using Entry = std::pair<float, std::size_t>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+    ways.cost[gate] = 0.0F;
+    open.emplace(0.0F, gate);
+    while (!open.empty()) {
+      const float so_far = open.top().first;
+      const std::size_t index = open.top().second;
+      open.pop();
+      if (so_far > ways.cost[index]) continue;
+      coarse_.for_each_neighbour(index, 8, [&](int n, std::size_t next) {
+        const float total = so_far + ways.step_cost(index, next, n);
+        if (ring.road[next] == 0 || total >= ways.cost[next]) return;
+        const int turns = ways.turns[index] + turn_of(centre, coarse_.place(index), n);
+        ways.cost[next] = total;
+        ways.turns[next] = static_cast<std::int8_t>(std::clamp(turns, -100, 100));
+        ways.back[next] = static_cast<std::int8_t>(n);
+        open.emplace(total, next);
+      });
+    }
+    return ways;
+  }
+
+  /// Cheapest way from the gate round the obstacle and back: two ways from the gate that together turn round
+  /// it once, joined by a step. Empty if there is none.
   [[nodiscard]] std::vector<Vec2> way_round(const Ring& ring) const {
     const std::size_t gate = gate_of(ring);
     if (gate == ring.centre) return {};
     const Place centre = coarse_.place(ring.centre);
-    const double roomy = std::max(1.0, clearance_at(gate));
-    const auto crossing = [&](const Place& from, const Place& to) {
-      const bool is_above = 0.5 * (from.x + to.x) > centre.x;
-      if (!is_above) return 0;
-      return from.y == centre.y && to.y == centre.y + 1   ? 1
-             : from.y == centre.y + 1 && to.y == centre.y ? -1
-                                                          : 0;
-    };
-    constexpr float kUnseen = std::numeric_limits<float>::infinity();
-    std::vector<float> cost(coarse_.size(), kUnseen);
-    std::vector<std::int8_t> turns(coarse_.size(), 0);
-    std::vector<std::int8_t> back(coarse_.size(), -1);
-    std::vector<float> cell_cost(coarse_.size(), 0.0F);
-    for (std::size_t i = 0; i < cell_cost.size(); ++i) {
-      if (ring.road[i] == 0) continue;
-      const double near = roomy / std::max(0.5, clearance_at(i));
-      cell_cost[i] = static_cast<float>(1.0 + near * near);
-    }
-    const auto step_cost = [&](std::size_t a, std::size_t b, int n) {
-      return 0.5F * (cell_cost[a] + cell_cost[b]) * (n < 4 ? 1.0F : 1.41421356F);
-    };
-    using Entry = std::pair<float, std::size_t>;
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
-    cost[gate] = 0.0F;
-    open.emplace(0.0F, gate);
-    while (!open.empty()) {
-      const auto [so_far, index] = open.top();
-      open.pop();
-      if (so_far > cost[index]) continue;
-      const Place at = coarse_.place(index);
-      for (int n = 0; n < 8; ++n) {
-        const Place to = neighbour(at, n);
-        if (!coarse_.has(to.x, to.y)) continue;
-        const std::size_t next = coarse_.at(to.x, to.y);
-        const float total = so_far + step_cost(index, next, n);
-        if (ring.road[next] == 0 || total >= cost[next]) continue;
-        cost[next] = total;
-        turns[next] = static_cast<std::int8_t>(std::clamp(turns[index] + crossing(at, to), -100, 100));
-        back[next] = static_cast<std::int8_t>(n);
-        open.emplace(total, next);
-      }
-    }
-    // Cheapest step between two ways from the gate that together go round once.
-    float best = kUnseen;
+    const Ways ways = ways_from(gate, ring);
+    float best = kUnreached;
     std::size_t one = gate, other = gate;
-    for (std::size_t i = 0; i < cost.size(); ++i) {
-      if (cost[i] == kUnseen) continue;
-      const Place at = coarse_.place(i);
-      for (int n = 0; n < 8; ++n) {
-        const Place to = neighbour(at, n);
-        if (!coarse_.has(to.x, to.y)) continue;
-        const std::size_t next = coarse_.at(to.x, to.y);
-        if (ring.road[next] == 0 || turns[i] + crossing(at, to) - turns[next] != 1) continue;
-        const float total = cost[i] + step_cost(i, next, n) + cost[next];
-        if (total < best) {
-          best = total;
-          one = i;
-          other = next;
-        }
-      }
+    for (std::size_t i = 0; i < coarse_.size(); ++i) {
+      if (ways.cost[i] == kUnreached) continue;
+      coarse_.for_each_neighbour(i, 8, [&](int n, std::size_t next) {
+        const int turns = ways.turns[i] + turn_of(centre, coarse_.place(i), n) - ways.turns[next];
+        const float total = ways.cost[i] + ways.step_cost(i, next, n) + ways.cost[next];
+        if (ring.road[next] == 0 || turns != 1 || total >= best) return;
+        best = total;
+        one = i;
+        other = next;
+      });
     }
-    if (best == kUnseen) return {};
+    if (best == kUnreached) return {};
     std::vector<Vec2> line;
-    trace(back, gate, one, line);
+    trace(ways, gate, one, line);
     std::reverse(line.begin(), line.end());
-    trace(back, gate, other, line);
+    trace(ways, gate, other, line);
     if (!line.empty()) line.pop_back();  // the gate is the first point already
     return line;
   }
 
   /// Adds the way from a cell back to the gate.
-  void trace(const std::vector<std::int8_t>& back, std::size_t gate, std::size_t from,
-             std::vector<Vec2>& line) const {
+  void trace(const Ways& ways, std::size_t gate, std::size_t from, std::vector<Vec2>& line) const {
     for (std::size_t i = from;;) {
       const Place at = coarse_.place(i);
       line.push_back(centre_of(i));
-      if (i == gate || back[i] < 0) return;
-      const Place& step = kNeighbours[back[i]];
+      if (i == gate || ways.back[i] < 0) return;
+      const Place& step = kNeighbours[ways.back[i]];
       i = coarse_.at(at.x - step.x, at.y - step.y);
     }
   }
 
+  /// Position of the centre of a coarse cell.
   [[nodiscard]] Vec2 centre_of(std::size_t coarse) const {
     const Place at = coarse_.place(coarse);
     return {(at.x + 0.5) * stride_, (at.y + 0.5) * stride_};
   }
-  static Place neighbour(const Place& at, int n) {
-    return {at.x + kNeighbours[n].x, at.y + kNeighbours[n].y};
-  }
 
-  /// Distance from any place to the nearest wall, interpolated between the centres of cells [cells].
+  /// Distance from any position to the nearest wall, interpolated between the centres of fine cells.
   [[nodiscard]] double room_at(const Vec2& place) const {
     const double x = std::clamp(place.x() - 0.5, 0.0, fine_.width - 1.001);
     const double y = std::clamp(place.y() - 0.5, 0.0, fine_.height - 1.001);
@@ -290,7 +292,8 @@ class LoopFinder {
            v * ((1.0 - u) * value(x0, y1) + u * value(x1, y1)) - 0.5;
   }
 
-  /// Unit vector to the left of the line at point i.
+  /// Unit vector to the left of the closed line at point i, by the chord between the points `reach` before
+  /// and after it.
   static Vec2 left_of(const std::vector<Vec2>& line, std::size_t i, std::size_t reach) {
     const std::size_t count = line.size();
     const Vec2 along = line[(i + reach) % count] - line[(i + count - reach) % count];
@@ -298,9 +301,9 @@ class LoopFinder {
     return length > 0.0 ? Vec2{-along.y() / length, along.x() / length} : Vec2{0.0, 1.0};
   }
 
-  /// Moves each point across the line to the place with most room, in rounds. Each ends with smoothing and
-  /// even spacing. The numbers were chosen: reach and spacing as shares of the half width, four places to
-  /// each side, a slight preference for staying (1e-3), half of each move.
+  /// Moves each point across the line to the place with most room, in rounds. Each round ends with smoothing
+  /// and even spacing. Chosen: reach and spacing as shares of the half width, four places to each side, a
+  /// slight preference for staying (1e-3), half of each move.
   [[nodiscard]] std::vector<Vec2> moved_to_the_middle(std::vector<Vec2> line) const {
     std::vector<double> room;
     for (const Vec2& point : line) room.push_back(room_at(point));
@@ -333,8 +336,9 @@ class LoopFinder {
     return line;
   }
 
-  /// Distance to the first blocked cell in a direction, at most `most` [cells]. The field gives the step:
-  /// less 1.5 cells for the sides of cells.
+  /// Distance to the first blocked cell in a direction, at most `most`. Each step is as long as the distance
+  /// field allows, less 1.5 cells: from the position to its cell's centre, and from the wall's centre to its
+  /// corner.
   [[nodiscard]] double cast(const Vec2& from, const Vec2& direction, double most) const {
     double away = 0.0;
     while (away < most) {
@@ -346,8 +350,8 @@ class LoopFinder {
     return most;
   }
 
-  /// Distances to an oblique wall without the teeth that its cells make: the road's edge runs along their
-  /// tips. Takes the least of three neighbours, and the mean of five of those.
+  /// Distances to a wall without the teeth that the cells of an oblique wall make: the road's edge runs along
+  /// their tips. Each is the least of three neighbours, then the mean of five, and never more than measured.
   static std::vector<double> without_teeth(const std::vector<double>& side) {
     const std::size_t count = side.size();
     std::vector<double> least(count), even(count);
@@ -361,7 +365,7 @@ class LoopFinder {
     return even;
   }
 
-  /// The line with its widths, in the world.
+  /// The loop in W along a line, with the distances to the walls on both sides.
   [[nodiscard]] FreeLoop measured(const std::vector<Vec2>& line) const {
     FreeLoop loop{.spots = spots_};
     const std::size_t count = line.size();
@@ -382,6 +386,7 @@ class LoopFinder {
     return loop;
   }
 
+  /// Position in W [m] as text for messages.
   [[nodiscard]] std::string shown(const Vec2& fine) const {
     const Vec2 world = space_.to_world(join_ * fine);
     return fmt::format("({:.2f}, {:.2f})", world.x(), world.y());
@@ -434,15 +439,11 @@ class LoopFinder {
       std::vector<std::size_t> open{from};
       is_seen[from] = 1;
       for (std::size_t i = 0; i < open.size(); ++i) {
-        const Place at = coarse_.place(open[i]);
-        for (int n = 0; n < 4; ++n) {
-          const Place to = neighbour(at, n);
-          if (!coarse_.has(to.x, to.y)) continue;
-          const std::size_t next = coarse_.at(to.x, to.y);
-          if (labels[next] != label || is_seen[next] != 0) continue;
+        coarse_.for_each_neighbour(open[i], 4, [&](int /*n*/, std::size_t next) {
+          if (labels[next] != label || is_seen[next] != 0) return;
           is_seen[next] = 1;
           open.push_back(next);
-        }
+        });
       }
       return open.back();
     };
@@ -455,12 +456,13 @@ class LoopFinder {
 
   const FreeSpace& space_;
   LoopOptions options_;
-  int join_ = 1;       ///< side of a fine cell, in cells of the map
-  int stride_ = 1;     ///< side of a coarse cell, in fine cells
-  double cell_ = 0.0;  ///< side of a fine cell [m]
-  Grid fine_, coarse_;
-  Mask blocked_;                                ///< walls, on the fine grid
-  std::vector<float> field_;                    ///< distance of each fine cell to the nearest wall [cells]
+  int join_ = 1;                                ///< side of a fine cell, in cells of the map
+  int stride_ = 1;                              ///< side of a coarse cell, in fine cells
+  double cell_ = 0.0;                           ///< side of a fine cell [m]
+  Grid fine_;                                   ///< grid of walls and distances
+  Grid coarse_;                                 ///< grid of the search
+  Mask blocked_;                                ///< walls and unknown cells, on the fine grid
+  std::vector<float> field_;                    ///< distance of each fine cell to the nearest wall
   int spots_ = 0;                               ///< spots that remove_spots() freed
   std::pair<std::vector<int>, int> largest_{};  ///< labels of the coarse grid, and its largest road's label
 };

@@ -11,9 +11,12 @@
 
 namespace chicane::survey {
 
+/// Finds a road in an occupancy map: the middle line of free room that leads round an obstacle.
+
+/// Content of a cell of a map.
 enum class Cell : std::uint8_t { kFree, kWall, kUnknown };
 
-/// A place seen from above as square cells, as maps of ROS have it.
+/// Occupancy map of a place, seen from above, in the layout of ROS: square cells in rows.
 struct FreeSpace {
   int width = 0, height = 0;     ///< [cells], > 0
   double resolution = 0.05;      ///< side of a cell [m], > 0
@@ -21,30 +24,32 @@ struct FreeSpace {
   double yaw = 0.0;              ///< direction of the rows in W [rad]
   std::vector<Cell> cells = {};  ///< row by row, the lowest row first
 
-  /// A place in W from one in cells, and the other way round.
+  /// Position in W [m] of a position in cells, which are counted from the origin.
   [[nodiscard]] Vec2 to_world(const Vec2& in_cells) const noexcept;
+  /// Position in cells of a position in W [m].
   [[nodiscard]] Vec2 to_cells(const Vec2& in_world) const noexcept;
 };
 
+/// Options of find_loop(). The defaults were chosen for model cars of scale 1:10.
 struct LoopOptions {
-  double least_width = 0.4;      ///< narrower passages are no road [m], > 0
-  double least_obstacle = 0.25;  ///< smaller spots within the road are noise of the map [m], >= 0
+  double least_width = 0.4;      ///< width below which a passage is no road [m], > 0
+  double least_obstacle = 0.25;  ///< diagonal up to which an obstacle on the road is noise [m], >= 0
   std::optional<Vec2>
-      start{};  ///< a place in W on the road that is meant; else the road with the largest infield
+      start{};  ///< position in W on the wanted road; empty: the road with the largest infield
 };
 
-/// A loop round the largest obstacle of free space, counter-clockwise.
+/// Closed road round an obstacle of a map, counter-clockwise.
 struct FreeLoop {
   std::vector<road::TrackPoint> points = {};  ///< points in W, evenly spaced
-  double median_width = 0.0;                  ///< [m]
-  int spots = 0;                              ///< spots treated as noise
+  double median_width = 0.0;                  ///< median of the road's width [m]
+  int spots = 0;                              ///< number of obstacles treated as noise
 };
 
-/// Middle line of the free room between walls, and its width to each side: among all ways round the infield a
-/// short one far from walls. Unknown cells are no road. More than 16 million cells are joined first: memory
-/// stays below 20 bytes for each cell.
+/// Middle line of the free room between walls, and its width to each side. Of all ways round the infield the
+/// search takes a short one far from walls. Unknown cells are no road. A map of more than 16 million cells is
+/// coarsened first. Memory: below 20 bytes for each cell.
 ///
-/// kParse if there is no loop: "... open between (3.2, -1.0) and ...", with details of the places.
+/// Fails with kParse if there is no loop. The message says where the free room is too narrow or open.
 [[nodiscard]] Result<FreeLoop> find_loop(const FreeSpace& space, const LoopOptions& options);
 
 }  // namespace chicane::survey

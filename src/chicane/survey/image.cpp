@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Grey images: PGM and PNG readers, distance field, and connected regions.
+// Reads grey images from PGM and PNG files; computes the distance field and the connected regions of a mask.
 #include "chicane/survey/image.hpp"
 
 #include <fmt/format.h>
@@ -14,6 +14,7 @@
 namespace chicane::survey {
 namespace {
 
+/// Fails unless an image has a cell and no more than kMostCells.
 Result<void> check_size(double width, double height, const std::string& file) {
   const bool is_sound =
       width >= 1.0 && height >= 1.0 && width * height <= static_cast<double>(GreyImage::kMostCells);
@@ -22,7 +23,7 @@ Result<void> check_size(double width, double height, const std::string& file) {
                                              height, GreyImage::kMostCells));
 }
 
-/// The next word of a PGM header; comments go from # to the end of the line.
+/// Takes the next word of a PGM header off `rest`; a comment reaches from # to the end of the line.
 std::string_view next_word(std::string_view& rest) {
   const auto is_space = [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
   while (!rest.empty() && (is_space(rest.front()) || rest.front() == '#')) {
@@ -36,6 +37,7 @@ std::string_view next_word(std::string_view& rest) {
   return word;
 }
 
+/// Image in a PGM file, as text (P2) or one byte for each cell (P5).
 Result<GreyImage> read_pgm(std::string_view bytes, const std::string& file) {
   const bool is_text = bytes.starts_with("P2");
   std::string_view rest = bytes.substr(2);
@@ -65,6 +67,7 @@ Result<GreyImage> read_pgm(std::string_view bytes, const std::string& file) {
   return image;
 }
 
+/// Image in a PNG file, made grey by libpng.
 Result<GreyImage> read_png(std::string_view bytes, const std::string& file) {
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
@@ -94,15 +97,20 @@ Result<GreyImage> read_image(std::string_view bytes, const std::string& file) {
 
 namespace {
 
-constexpr double kFar = 1e12;  // [cells²]
+constexpr float kNoneInColumn = 1e6F;  // [cells] distance in a column without a set cell: beyond all images
+constexpr double kFar = 1e12;          // [cells²] its square
 
-/// Lower envelope of parabolas: squared distances along one line from those across it.
+/// Squared distances of the cells of one row from the distances within their columns: the lower envelope of
+/// the parabolas (x − q)² + from[q], one for each cell q of the row.
 class Envelope {
  public:
   explicit Envelope(std::size_t most) : from_(most), to_(most), vertex_(most), bound_(most + 1) {}
 
+  /// Squared distances within the columns, to be set [cells²].
   std::vector<double>& from() { return from_; }
+  /// Squared distances of the first `count` cells of the row [cells²].
   const std::vector<double>& measure(std::size_t count) {
+    // The parabolas that are part of the envelope, from left to right.
     std::size_t top = 0;
     vertex_[0] = 0;
     bound_[0] = -kFar;
@@ -118,6 +126,7 @@ class Envelope {
       bound_[top] = meets;
       bound_[top + 1] = kFar;
     }
+    // The value of the envelope at each cell.
     std::size_t at = 0;
     for (std::size_t q = 0; q < count; ++q) {
       while (bound_[at + 1] < static_cast<double>(q)) ++at;
@@ -128,14 +137,15 @@ class Envelope {
   }
 
  private:
+  /// Place in the row at which the parabolas of the cells q and v have the same value.
   [[nodiscard]] double crossing(std::size_t q, std::size_t v) const {
     const double a = static_cast<double>(q), b = static_cast<double>(v);
     return ((from_[q] + a * a) - (from_[v] + b * b)) / (2.0 * (a - b));
   }
 
-  std::vector<double> from_, to_;
-  std::vector<std::size_t> vertex_;
-  std::vector<double> bound_;
+  std::vector<double> from_, to_;    ///< from() and the result of measure() [cells²]
+  std::vector<std::size_t> vertex_;  ///< cells whose parabolas are part of the envelope
+  std::vector<double> bound_;        ///< limits between these parts; kFar beyond the last
 };
 
 }  // namespace
@@ -144,11 +154,11 @@ std::vector<float> distance_field(const std::vector<std::uint8_t>& is_set, int w
   const auto columns = static_cast<std::size_t>(width);
   const auto rows = static_cast<std::size_t>(height);
   std::vector<float> field(columns * rows);
-  // Down the columns by two sweeps, distances in whole cells.
+  // Distances within each column: a sweep downwards, then one upwards.
   for (std::size_t x = 0; x < columns; ++x) {
-    float away = 1e6F;
+    float away = kNoneInColumn;
     for (std::size_t y = 0; y < rows; ++y) {
-      away = is_set[y * columns + x] != 0 ? 0.0F : std::min(away + 1.0F, 1e6F);
+      away = is_set[y * columns + x] != 0 ? 0.0F : std::min(away + 1.0F, kNoneInColumn);
       field[y * columns + x] = away;
     }
     for (std::size_t y = rows; y-- > 0;) {
@@ -174,8 +184,7 @@ std::vector<Region> regions_of(const Mask& mask, const Grid& grid, int neighbour
   for (std::size_t seed = 0; seed < grid.size(); ++seed) {
     if (mask[seed] == 0 || labels[seed] != 0) continue;
     const Place begin = grid.place(seed);
-    Region region{
-        .first = seed, .left = begin.x, .right = begin.x, .low = begin.y, .high = begin.y, .rightmost = seed};
+    Region region{.left = begin.x, .right = begin.x, .low = begin.y, .high = begin.y, .rightmost = seed};
     const int label = static_cast<int>(regions.size()) + 1;
     labels[seed] = label;
     open.push_back(seed);
@@ -191,14 +200,11 @@ std::vector<Region> regions_of(const Mask& mask, const Grid& grid, int neighbour
       region.right = std::max(region.right, at.x);
       region.is_at_border =
           region.is_at_border || at.x == 0 || at.y == 0 || at.x + 1 == grid.width || at.y + 1 == grid.height;
-      for (int n = 0; n < neighbours; ++n) {
-        const int x = at.x + kNeighbours[n].x, y = at.y + kNeighbours[n].y;
-        if (!grid.has(x, y)) continue;
-        const std::size_t next = grid.at(x, y);
-        if (mask[next] == 0 || labels[next] != 0) continue;
+      grid.for_each_neighbour(index, neighbours, [&](int /*n*/, std::size_t next) {
+        if (mask[next] == 0 || labels[next] != 0) return;
         labels[next] = label;
         open.push_back(next);
-      }
+      });
     }
     regions.push_back(region);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Geometry of surveyed points: polylines, the plane of geographic coordinates, and the line between cones,
-// which is the zero line of a field on a raster: distance to the right cones less distance to the left ones.
+// Geometry of surveyed points: polylines, the plane of geographic coordinates, and the road between cones.
+// The road's line is the zero line of a field on a raster: distance to the right cones less distance to the
+// left.
 #include "chicane/survey/sampled_line.hpp"
 
 #include <fmt/format.h>
@@ -25,7 +26,7 @@ double length_of(std::span<const Vec2> line, bool closed) noexcept {
 }
 
 std::vector<Vec2> sampled(std::span<const Vec2> line, bool closed, double spacing) {
-  constexpr double kMost = 1e6;
+  constexpr double kMost = 1e6;  // limit of points: bounds memory; chosen
   const double length = length_of(line, closed);
   const auto count = static_cast<std::size_t>(std::clamp(std::round(length / spacing), 2.0, kMost));
   const double step = length / static_cast<double>(count);
@@ -110,19 +111,20 @@ namespace {
 constexpr std::size_t kMostCones = 20000;  // bounds time; chosen
 constexpr double kMostExtent = 20000.0;    // [m] extent of a course; chosen
 constexpr double kMostCells = 2e6;         // cells of the raster; bounds memory; chosen
-constexpr double kFinest = 0.05;           // [m] least side of a cell
-constexpr double kGap = 1.6;               // length of a reported gap over the median of its neighbours
-constexpr std::size_t kNear = 4;           // neighbours on each side that a gap is compared with
-constexpr double kLeastShare = 0.2;        // narrowest width of a course over the median one
-constexpr double kFarAway = 3.0;           // distance to the cones that ends a line, over its lower quartile
-constexpr std::size_t kLeastPoints = 8;    // points of a zero line that is no noise; chosen
+constexpr double kFinest = 0.05;           // [m] least side of a cell; chosen
+constexpr double kGap = 1.6;         // length of a reported gap over the median of its neighbours; chosen
+constexpr std::size_t kNear = 4;     // neighbours on each side that a gap is compared with; chosen
+constexpr double kLeastShare = 0.2;  // narrowest width of a course over the median one; chosen
+constexpr double kFarAway = 3.0;  // distance to the cones that ends a line, over its lower quartile; chosen
+constexpr std::size_t kLeastPoints = 8;  // points of a zero line that is no noise; chosen
+constexpr double kSpacing = 0.5;         // [m] spacing of the road's points, as in ConeRoad
 
-/// Raster of square cells round the cones.
-struct Raster {
-  Vec2 low{};
-  double cell = 0.1;  ///< [m]
-  int width = 0, height = 0;
+/// Grid of square cells round the cones.
+struct Raster : Grid {
+  Vec2 low{};         ///< lower left corner of the first cell [m]
+  double cell = 0.1;  ///< side of a cell [m]
 
+  /// Raster with a margin round the cones, as fine as kMostCells permits.
   static Raster round(const Cones& cones) {
     Vec2 low = cones.left.front(), high = low;
     for (const std::vector<Vec2>* side : {&cones.left, &cones.right, &cones.either})
@@ -134,34 +136,39 @@ struct Raster {
     low -= margin;
     const Vec2 extent = high + margin - low;
     const double cell = std::max(kFinest, std::sqrt(extent.x() * extent.y() / kMostCells));
-    return {low, cell, static_cast<int>(extent.x() / cell) + 2, static_cast<int>(extent.y() / cell) + 2};
+    return {{static_cast<int>(extent.x() / cell) + 2, static_cast<int>(extent.y() / cell) + 2}, low, cell};
   }
-  [[nodiscard]] std::size_t at(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-  }
-  [[nodiscard]] std::size_t of(const Vec2& place) const {
-    const Vec2 cells = (place - low) / cell;
+  /// Index of the cell at a position [m], or of the nearest one.
+  [[nodiscard]] std::size_t cell_at(const Vec2& position) const {
+    const Vec2 cells = (position - low) / cell;
     return at(std::clamp(static_cast<int>(cells.x()), 0, width - 1),
               std::clamp(static_cast<int>(cells.y()), 0, height - 1));
   }
-  [[nodiscard]] std::vector<float> distances(const std::vector<Vec2>& places) const {
-    std::vector<std::uint8_t> mask(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
-    for (const Vec2& place : places) mask[of(place)] = 1;
+  /// Distance of each cell to the nearest of some positions [cells].
+  [[nodiscard]] std::vector<float> distances(const std::vector<Vec2>& positions) const {
+    Mask mask(size(), 0);
+    for (const Vec2& position : positions) mask[cell_at(position)] = 1;
     return distance_field(mask, width, height);
   }
 };
 
-/// Lines along which a field is zero, by marching squares. The field is positive on their left.
+/// Line along which a field is zero [m].
+struct ZeroLine {
+  std::vector<Vec2> points = {};
+  bool is_closed = false;
+};
+
+/// Search of the lines along which a field is zero, by marching squares. The field is positive on their left.
 class ZeroLines {
  public:
   ZeroLines(const Raster& raster, const std::vector<float>& field) : raster_{raster}, field_{field} {}
 
-  /// All zero lines [m], each with true if it is closed.
-  std::vector<std::pair<std::vector<Vec2>, bool>> find() {
+  /// All zero lines.
+  std::vector<ZeroLine> find() {
     for (int y = 0; y + 1 < raster_.height; ++y)
       for (int x = 0; x + 1 < raster_.width; ++x) add_cell(x, y);
-    std::vector<std::pair<std::vector<Vec2>, bool>> lines;
-    // Open lines begin where none arrives.
+    std::vector<ZeroLine> lines;
+    // An open line begins at an edge that no other piece leads to.
     std::map<Edge, bool> arrives;
     for (const auto& [from, to] : next_) arrives[to] = true;
     std::vector<Edge> begins;
@@ -176,19 +183,22 @@ class ZeroLines {
   /// Edge of a cell: from a corner to the next one on the right (false) or above (true).
   using Edge = std::pair<std::size_t, bool>;
 
+  /// The field at the centre of a cell; never zero, so that each line lies between two centres.
   [[nodiscard]] double value(int x, int y) const {
     const double v = static_cast<double>(field_[raster_.at(x, y)]);
     return v == 0.0 ? 1e-9 : v;
   }
 
+  /// Adds the pieces of zero lines in the square between the centres of four cells, of which (x, y) is the
+  /// lowest and leftmost.
   void add_cell(int x, int y) {
     const bool a = value(x, y) > 0.0, b = value(x + 1, y) > 0.0, c = value(x + 1, y + 1) > 0.0,
                d = value(x, y + 1) > 0.0;
     if (a == b && b == c && c == d) return;
     const Edge low{raster_.at(x, y), false}, right{raster_.at(x + 1, y), true},
         high{raster_.at(x, y + 1), false}, left{raster_.at(x, y), true};
-    // Corners counter-clockwise: a line enters where positive goes to negative, and leaves where it comes
-    // back.
+    // Corners counter-clockwise: a line enters through an edge from positive to negative, and leaves through
+    // one from negative to positive.
     const bool corner[4] = {a, b, c, d};
     const Edge edges[4] = {low, right, high, left};
     std::vector<Edge> enters, leaves;
@@ -199,9 +209,9 @@ class ZeroLines {
     for (std::size_t i = 0; i < enters.size() && i < leaves.size(); ++i) next_[enters[i]] = leaves[i];
   }
 
-  [[nodiscard]] Vec2 place(const Edge& edge) const {
-    const auto columns = static_cast<std::size_t>(raster_.width);
-    const int x = static_cast<int>(edge.first % columns), y = static_cast<int>(edge.first / columns);
+  /// Position of the zero on an edge [m], by linear interpolation.
+  [[nodiscard]] Vec2 zero_on(const Edge& edge) const {
+    const auto [x, y] = raster_.place(edge.first);
     const double here = value(x, y);
     const double there = edge.second ? value(x, y + 1) : value(x + 1, y);
     const double share = here / (here - there);
@@ -209,35 +219,35 @@ class ZeroLines {
            raster_.cell * Vec2{x + 0.5 + (edge.second ? 0.0 : share), y + 0.5 + (edge.second ? share : 0.0)};
   }
 
-  /// Follows an outline. `begin` is a copy, because the edge is taken out of next_.
-  std::pair<std::vector<Vec2>, bool> follow(Edge begin) {
-    std::vector<Vec2> line{place(begin)};
+  /// Takes the line from the edge `begin` on out of next_. `begin` is a copy, because next_ loses the edge.
+  ZeroLine follow(Edge begin) {
+    std::vector<Vec2> line{zero_on(begin)};
     Edge at = begin;
     for (auto step = next_.find(at); step != next_.end(); step = next_.find(at)) {
       at = step->second;
       next_.erase(step);
       if (at == begin) return {std::move(line), true};
-      line.push_back(place(at));
+      line.push_back(zero_on(at));
     }
     return {std::move(line), false};
   }
 
   const Raster& raster_;
   const std::vector<float>& field_;
-  std::map<Edge, Edge> next_;
+  std::map<Edge, Edge> next_;  ///< the edge through which a line leaves, for each through which it enters
 };
 
-/// Longest zero line near the cones. Open lines are cut off where they leave the cones.
-std::optional<std::pair<std::vector<Vec2>, bool>> line_of(const Raster& raster,
-                                                          const std::vector<float>& to_left,
-                                                          const std::vector<float>& to_right) {
+/// Longest zero line near the cones; empty if there is none. Open lines are cut off where they leave the
+/// cones. `to_left`, `to_right`: distances to the cones of a side [cells].
+ZeroLine line_of(const Raster& raster, const std::vector<float>& to_left,
+                 const std::vector<float>& to_right) {
   std::vector<float> field(to_left.size());
   for (std::size_t i = 0; i < field.size(); ++i) field[i] = to_right[i] - to_left[i];
-  std::optional<std::pair<std::vector<Vec2>, bool>> best;
+  ZeroLine best;
   double most = 0.0;
   for (auto& [line, is_closed] : ZeroLines(raster, field).find()) {
     std::vector<double> room;
-    for (const Vec2& point : line) room.push_back(static_cast<double>(to_left[raster.of(point)]));
+    for (const Vec2& point : line) room.push_back(static_cast<double>(to_left[raster.cell_at(point)]));
     // The lower quartile is a width between cones: beyond the last ones an open line runs off to infinity.
     std::vector<double> sorted = room;
     std::sort(sorted.begin(), sorted.end());
@@ -264,7 +274,7 @@ std::optional<std::pair<std::vector<Vec2>, bool>> line_of(const Raster& raster,
   return best;
 }
 
-/// Cones of one side, sorted by the nearest point of the line; cones in one place are kept once.
+/// Cones of one side, sorted along the line by its point nearest to each. Of cones in one place one is kept.
 std::vector<Vec2> in_order(const std::vector<Vec2>& side, const std::vector<Vec2>& line) {
   std::vector<std::pair<std::ptrdiff_t, Vec2>> placed;
   for (const Vec2& cone : side) {
@@ -281,6 +291,7 @@ std::vector<Vec2> in_order(const std::vector<Vec2>& side, const std::vector<Vec2
   return ordered;
 }
 
+/// Adds the gaps between the cones of one side that are much longer than those beside them.
 void add_gaps(const std::vector<Vec2>& cones, bool is_closed, bool is_left, std::vector<ConeGap>& gaps) {
   std::vector<double> steps;
   const std::size_t count = is_closed ? cones.size() : cones.size() - 1;
@@ -294,6 +305,29 @@ void add_gaps(const std::vector<Vec2>& cones, bool is_closed, bool is_left, std:
     if (!near.empty() && steps[i] > kGap * median(near))
       gaps.push_back({is_left, 0.5 * (cones[i] + cones[(i + 1) % cones.size()]), steps[i]});
   }
+}
+
+/// Sets the points of the road and its median width, from the distances to its edges [cells]. Fails for a
+/// line with a place much narrower than the others: there the course crosses itself.
+Result<void> add_points(const std::vector<Vec2>& line, const Raster& raster,
+                        const std::vector<float>& to_left, const std::vector<float>& to_right,
+                        ConeRoad& road) {
+  std::vector<double> widths;
+  for (const Vec2& point : line) {
+    const std::size_t at = raster.cell_at(point);
+    const double left = std::max(0.1, static_cast<double>(to_left[at]) * raster.cell);
+    const double right = std::max(0.1, static_cast<double>(to_right[at]) * raster.cell);
+    road.points.push_back({point, left, right});
+    widths.push_back(left + right);
+  }
+  road.median_width = median(widths);
+  const auto narrowest = std::min_element(widths.begin(), widths.end());
+  if (*narrowest >= kLeastShare * road.median_width) return {};
+  const Vec2& place = line[static_cast<std::size_t>(narrowest - widths.begin())];
+  return fail(ErrorCode::kParse,
+              fmt::format("cones: got a course {:.1f} m wide at ({:.2f}, {:.2f}) and {:.1f} m in the median, "
+                          "expected one that does not cross itself, as a skidpad does",
+                          *narrowest, place.x(), place.y(), road.median_width));
 }
 
 }  // namespace
@@ -314,45 +348,33 @@ Result<ConeRoad> line_between(const Cones& given) {
   std::vector<float> to_left = raster.distances(cones.left);
   std::vector<float> to_right = raster.distances(cones.right);
   for (const Vec2& cone : cones.either)
-    (to_left[raster.of(cone)] <= to_right[raster.of(cone)] ? cones.left : cones.right).push_back(cone);
+    (to_left[raster.cell_at(cone)] <= to_right[raster.cell_at(cone)] ? cones.left : cones.right)
+        .push_back(cone);
   if (!cones.either.empty()) {
     to_left = raster.distances(cones.left);
     to_right = raster.distances(cones.right);
   }
-  const auto rough = line_of(raster, to_left, to_right);
-  if (!rough) return fail(ErrorCode::kParse, "cones: got no line between the two sides, expected a course");
-  ConeRoad road{.is_closed = rough->second};
-  const std::vector<Vec2> along = sampled(rough->first, road.is_closed, 0.5);
+
+  // The line halfway between single cones, and the order of the cones along it.
+  const ZeroLine rough = line_of(raster, to_left, to_right);
+  if (rough.points.empty())
+    return fail(ErrorCode::kParse, "cones: got no line between the two sides, expected a course");
+  ConeRoad road{.is_closed = rough.is_closed};
+  const std::vector<Vec2> along = sampled(rough.points, road.is_closed, kSpacing);
   const std::vector<Vec2> left = in_order(cones.left, along), right = in_order(cones.right, along);
   if (left.size() < 2 || right.size() < 2) return fail(ErrorCode::kParse, "cones: got a side in one place");
   add_gaps(left, road.is_closed, true, road.gaps);
   add_gaps(right, road.is_closed, false, road.gaps);
 
-  // Fences between the cones, as points closer than the cells of the raster.
+  // The line halfway between the fences that join the cones, which are points closer than the raster's cells.
   to_left = raster.distances(sampled(left, road.is_closed, 0.5 * raster.cell));
   to_right = raster.distances(sampled(right, road.is_closed, 0.5 * raster.cell));
-  const auto middle = line_of(raster, to_left, to_right);
-  if (!middle || middle->second != road.is_closed)
+  const ZeroLine middle = line_of(raster, to_left, to_right);
+  if (middle.points.empty() || middle.is_closed != road.is_closed)
     return fail(ErrorCode::kParse, "cones: got sides that cross each other, expected a course between them");
-  std::vector<double> widths;
-  const std::vector<Vec2> line = sampled(middle->first, road.is_closed, 0.5);
-  for (const Vec2& point : line) {
-    const std::size_t at = raster.of(point);
-    const double to_l = std::max(0.1, static_cast<double>(to_left[at]) * raster.cell);
-    const double to_r = std::max(0.1, static_cast<double>(to_right[at]) * raster.cell);
-    road.points.push_back({point, to_l, to_r});
-    widths.push_back(to_l + to_r);
-  }
-  road.median_width = median(widths);
-  const auto narrowest = std::min_element(widths.begin(), widths.end());
-  if (*narrowest < kLeastShare * road.median_width) {
-    const Vec2& place = line[static_cast<std::size_t>(narrowest - widths.begin())];
-    return fail(
-        ErrorCode::kParse,
-        fmt::format("cones: got a course {:.1f} m wide at ({:.2f}, {:.2f}) and {:.1f} m in the median, "
-                    "expected one that does not cross itself, as a skidpad does",
-                    *narrowest, place.x(), place.y(), road.median_width));
-  }
+  const std::vector<Vec2> line = sampled(middle.points, road.is_closed, kSpacing);
+  if (const Result<void> sound = add_points(line, raster, to_left, to_right, road); !sound)
+    return fail(sound.error());
   return road;
 }
 

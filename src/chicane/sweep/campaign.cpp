@@ -22,10 +22,12 @@ namespace {
 
 using protocol::Json;
 
-constexpr std::size_t kBatch = 96;     // least trials that share the laps before their faults; chosen
-constexpr const char* kOwn = "own";    // value of for_s: duration of the fault's own kind
-constexpr const char* kLasts = "inf";  // value of for_s: to the end of the trial
+constexpr std::size_t kBatch = 96;          // least trials that share the laps before their faults; chosen
+constexpr const char* kDuration = "for_s";  // key of a duration as text, because it may be "inf" or "own"
+constexpr const char* kOwn = "own";         // value of for_s: duration of the fault's own kind
+constexpr const char* kLasts = "inf";       // value of for_s: to the end of the trial
 
+/// Values of the axis of faults: single names, then all pairs "a+b" if the campaign has pairs.
 std::vector<std::string> faults_of(const Campaign& campaign) {
   std::vector<std::string> names = campaign.faults;
   const std::size_t singles = names.size();
@@ -34,6 +36,7 @@ std::vector<std::string> faults_of(const Campaign& campaign) {
   return names;
 }
 
+/// Duration as a value of for_s.
 std::string duration_text(double duration) {
   return duration >= run::kLasting ? std::string(kLasts) : number_text(duration);
 }
@@ -60,7 +63,8 @@ double duration_of(const CampaignGroup& group, const std::vector<sim::Fault>& pa
   return longest;
 }
 
-/// Moments at which the faults of a group begin [s]. They depend on its names and the seed alone.
+/// Starts of the faults of a group [s], counted from the start of the flying lap: a function of the group's
+/// names and the seed alone.
 std::vector<double> onsets_of(const Campaign& campaign, const CampaignGroup& group, double lap_time) {
   std::vector<double> onsets;
   if (campaign.onsets == 0) {
@@ -76,6 +80,7 @@ std::vector<double> onsets_of(const Campaign& campaign, const CampaignGroup& gro
   return onsets;
 }
 
+/// Group of a run of the plan, without trials.
 CampaignGroup group_at(const Plan& plan, std::uint64_t run) {
   const Settings at = plan.at(run);
   return {.track = at[0].second,
@@ -85,16 +90,18 @@ CampaignGroup group_at(const Plan& plan, std::uint64_t run) {
           .lasts = at[4].second};
 }
 
+/// Whether two groups share the laps before their faults.
 bool is_same_place(const CampaignGroup& a, const CampaignGroup& b) {
   return a.track == b.track && a.car == b.car && a.preset == b.preset;
 }
 
-/// Place where the trials of one car and preset on one track are driven.
+/// Scenario of one car and preset on one track, and its flying lap without faults.
 struct Place {
   scenario::Scenario scenario;
   run::FlyingLap lap;
 };
 
+/// Place of a group; drives the laps before the faults.
 Result<Place> place_of(const Campaign& campaign, const CampaignGroup& group) {
   protocol::Request request;
   request.settings = {{"preset", group.preset}};
@@ -110,8 +117,7 @@ Result<Place> place_of(const Campaign& campaign, const CampaignGroup& group) {
   return Place{std::move(*scenario), std::move(*lap)};
 }
 
-constexpr const char* kDuration = "for_s";  // key of a text, because the duration may be "inf"
-
+/// Trials of a group as JSON, for its line in the file.
 std::string text_of(const std::vector<CampaignTrial>& trials) {
   Json all = Json::array();
   for (const CampaignTrial& trial : trials) {
@@ -122,13 +128,14 @@ std::string text_of(const std::vector<CampaignTrial>& trials) {
   return protocol::json_text(Json{{"trials", std::move(all)}});
 }
 
-/// Driver of groups of trials. With a group it drives the following ones of the same place, and keeps them.
+/// Driver of groups of trials. It drives a group together with the groups of the same place that follow, and
+/// keeps their results until they are asked for.
 class Driver {
  public:
   Driver(const Campaign& campaign, int jobs, const std::atomic<bool>& stop)
       : campaign_{campaign}, plan_{plan_of(campaign)}, jobs_{jobs}, stop_{stop} {}
 
-  /// The group's trials as JSON, for its line in the file; none if the campaign was stopped.
+  /// Trials of the group of run `run` as JSON; empty if the campaign was stopped.
   Result<std::optional<std::string>> drive(std::uint64_t run) {
     const CampaignGroup group = group_at(plan_, run);
     if (!place_ || !is_same_place(group, at_)) {
@@ -147,10 +154,10 @@ class Driver {
   }
 
  private:
-  /// Drives this group and as many after it as make kBatch trials.
+  /// Drives the group of run `first`, and groups after it until there are kBatch trials.
   Result<void> drive_from(std::uint64_t first) {
     std::vector<run::FaultTrial> trials;
-    std::vector<std::size_t> ends;  // ends of a group's trials
+    std::vector<std::size_t> ends;  // end of each group in `trials`
     for (std::uint64_t run = first; run < plan_.size() && trials.size() < kBatch; ++run) {
       const CampaignGroup group = group_at(plan_, run);
       if (!is_same_place(group, at_)) break;
@@ -169,7 +176,7 @@ class Driver {
     return {};
   }
 
-  /// Adds a group's trials; none for an unknown fault.
+  /// Adds the trials of a group; none for an unknown fault.
   void add_trials(const CampaignGroup& group, std::vector<run::FaultTrial>& trials) const {
     const auto parts = parts_of(group.fault);
     if (!parts) return;
@@ -183,6 +190,7 @@ class Driver {
     }
   }
 
+  /// Result of a trial.
   [[nodiscard]] CampaignTrial trial_of(const run::FaultOutcome& outcome) const {
     return {
         .at = outcome.at,
@@ -198,11 +206,12 @@ class Driver {
   Plan plan_;
   int jobs_;
   const std::atomic<bool>& stop_;
-  CampaignGroup at_;                            ///< a group that is driven at place_
-  std::optional<Result<Place>> place_;          ///< place of the last group
-  std::map<std::uint64_t, std::string> ready_;  ///< groups that were driven in advance, by run
+  CampaignGroup at_;                            ///< first group at place_
+  std::optional<Result<Place>> place_;          ///< place of the last group; empty before the first
+  std::map<std::uint64_t, std::string> ready_;  ///< results of groups driven in advance, by run
 };
 
+/// Trial of its JSON. Throws Json::exception for another value.
 CampaignTrial trial_in(const Json& json) {
   CampaignTrial trial;
   CampaignTrial::rows(trial, [&](const char* name, auto& value) {
@@ -211,18 +220,6 @@ CampaignTrial trial_in(const Json& json) {
   const std::string lasts = json.at(kDuration);
   trial.duration = lasts == kLasts ? run::kLasting : number_in(lasts).value_or(0.0);
   return trial;
-}
-
-CampaignGroup group_in(const Json& json) {
-  const Json& settings = json.at("settings");
-  CampaignGroup group{.track = plain_text(settings.at("track")),
-                      .car = plain_text(settings.at("car")),
-                      .preset = plain_text(settings.at("preset")),
-                      .fault = settings.at("fault"),
-                      .lasts = plain_text(settings.at("for_s")),
-                      .error = json.value("error", "")};
-  for (const Json& trial : json.value("trials", Json::array())) group.trials.push_back(trial_in(trial));
-  return group;
 }
 
 }  // namespace
@@ -248,7 +245,7 @@ Plan plan_of(const Campaign& campaign) {
   if (durations.empty()) durations = {kOwn};
   plan.axes = {list_axis("track", campaign.tracks), list_axis("car", campaign.cars),
                list_axis("preset", campaign.presets), list_axis("fault", faults_of(campaign)),
-               list_axis("for_s", durations)};
+               list_axis(kDuration, durations)};
   return plan;
 }
 
@@ -272,9 +269,17 @@ RunRule rule_of(const Campaign& campaign, int jobs, const std::atomic<bool>& sto
   };
 }
 
-Result<CampaignGroup> group_of(const protocol::Json& line) {
+Result<CampaignGroup> group_of(const Json& line) {
   try {
-    return group_in(line);
+    const Json& settings = line.at("settings");
+    CampaignGroup group{.track = plain_text(settings.at("track")),
+                        .car = plain_text(settings.at("car")),
+                        .preset = plain_text(settings.at("preset")),
+                        .fault = settings.at("fault"),
+                        .lasts = plain_text(settings.at(kDuration)),
+                        .error = line.value("error", "")};
+    for (const Json& trial : line.value("trials", Json::array())) group.trials.push_back(trial_in(trial));
+    return group;
   } catch (const Json::exception&) {
     return fail(ErrorCode::kParse,
                 fmt::format("got {}, expected a group of trials", printable(protocol::json_text(line))));

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Campaign of faults, alone and in pairs, at moments of a flying lap: a sweep in which each run is a group of
+// trials.
 #pragma once
 
 #include <atomic>
@@ -11,19 +13,19 @@
 #include "chicane/sweep/plan.hpp"
 #include "chicane/sweep/sweep.hpp"
 
-/// Faults, alone and in pairs, at moments of a flying lap: a sweep, each run of which is one group of trials.
 namespace chicane::sweep {
 
 /// Choice of trials: all tracks × cars × presets × faults × durations.
 struct Campaign {
   std::vector<std::string> tracks{}, cars{}, presets{};
-  std::vector<std::string> faults{};  ///< names
+  std::vector<std::string> faults{};  ///< names of kinds of faults
   bool has_pairs = false;             ///< also each pair of faults at once
-  std::vector<double> durations{};    ///< [s], run::kLasting: to the end; empty: each fault's own
-  int onsets = 0;                     ///< moments by chance for each group; 0: one each `step`
-  std::uint64_t seed = 1;             ///< seed of the random moments
-  double step = 0.5;                  ///< time between moments [s]
-  Settings settings{};                ///< settings of all runs
+  /// Durations of the faults [s], run::kLasting: to the end; empty: each fault's own.
+  std::vector<double> durations{};
+  int onsets = 0;          ///< number of random moments for each group; 0: one each `step`
+  std::uint64_t seed = 1;  ///< seed of the random moments
+  double step = 0.5;       ///< time between moments [s]
+  Settings settings{};     ///< settings of all runs
 };
 
 /// Names of the faults of measurement, link and computer: those that leave car and road as they are.
@@ -32,14 +34,16 @@ struct Campaign {
 /// Plan of a campaign: axes track, car, preset, fault ("link_lost+gps_noise") and for_s ("2", "inf", "own").
 [[nodiscard]] Plan plan_of(const Campaign& campaign);
 
+/// Result of one trial: a flying lap in which the faults of its group begin at one moment.
 struct CampaignTrial {
-  double at = 0.0;             ///< start of the faults, clock of the run [s]
-  double until = 0.0;          ///< end of the trial [s]
-  double duration = 0.0;       ///< duration of the faults [s]; run::kLasting: to the end
-  double least_edge = 0.0;     ///< least gap of a tyre afterwards [m]; < 0: off the road
-  bool is_off_anyway = false;  ///< the run without faults is off the road in that time, too
-  bool stands = false;         ///< stands at the end
-  std::int64_t replaced = 0;   ///< control steps that were not the controller's own answer
+  double at = 0.0;        ///< start of the faults by the clock of the run [s]
+  double until = 0.0;     ///< end of the trial [s]
+  double duration = 0.0;  ///< duration of the faults [s]; run::kLasting: to the end
+  /// Least gap from a tyre to the road's edge since the start [m]; < 0: off the road.
+  double least_edge = 0.0;
+  bool is_off_anyway = false;  ///< the run without faults leaves the road in the same time, too
+  bool stands = false;         ///< the car stands at the end of the trial
+  std::int64_t replaced = 0;   ///< control steps whose command was not the controller's own
 
   /// Calls `row` with the key in JSON and the member of each value. `Self`: CampaignTrial, const or not.
   template <class Self, class Row>
@@ -54,12 +58,12 @@ struct CampaignTrial {
   }
 };
 
-/// One line of the results.
+/// Trials of one fault or pair and one duration with one track, car and preset: a line of the results.
 struct CampaignGroup {
   std::string track{}, car{}, preset{}, fault{};
   std::string lasts{};  ///< duration as in the plan's axis for_s
   std::vector<CampaignTrial> trials{};
-  std::string error{};  ///< reason why nothing was tried; empty: something was
+  std::string error{};  ///< error if no trial could be driven; else empty
 };
 
 /// Settings of the run that repeats a trial (trial.hpp).
@@ -71,7 +75,7 @@ struct CampaignGroup {
 /// the campaign and the number of the run.
 [[nodiscard]] RunRule rule_of(const Campaign& campaign, int jobs, const std::atomic<bool>& stop);
 
-/// The group of a line of the results; kParse for another line.
+/// Group of a line of the results. kParse for another line.
 [[nodiscard]] Result<CampaignGroup> group_of(const protocol::Json& line);
 
 }  // namespace chicane::sweep

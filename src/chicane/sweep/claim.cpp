@@ -24,25 +24,29 @@ namespace {
 using protocol::YamlEntry;
 using protocol::YamlNode;
 
-/// Place of a column: "lap_times_s[-1]" as name and index.
+/// Name of a column, and the index of an entry of its list: "lap_times_s[-1]". Negative: counted from the
+/// end.
 struct ColumnPlace {
   std::string name;
-  std::optional<int> place;
+  std::optional<int> index;
 };
-ColumnPlace place_in(std::string_view text) {
+
+ColumnPlace column_place(std::string_view text) {
   const std::size_t open = text.find('[');
   if (open == std::string_view::npos || !text.ends_with(']')) return {std::string(text), std::nullopt};
-  const auto place = number_in(text.substr(open + 1, text.size() - open - 2));
-  return {std::string(text.substr(0, open)), place ? std::optional(static_cast<int>(*place)) : std::nullopt};
+  const auto index = number_in(text.substr(open + 1, text.size() - open - 2));
+  return {std::string(text.substr(0, open)), index ? std::optional(static_cast<int>(*index)) : std::nullopt};
 }
 
+/// Whether a condition may name the column.
 bool is_column(std::string_view text) {
-  return text == "clean" || find_column(place_in(text).name) != nullptr;
+  return text == "clean" || find_column(column_place(text).name) != nullptr;
 }
 
-/// Name of a case on the right of a comparison that means: every other clean case.
+/// Name that stands for every other clean case, on the right of a comparison.
 constexpr std::string_view kEach = "each";
 
+/// One side of a condition: a number or CASE.column; none for other texts.
 std::optional<Condition::Value> value_in(const std::string& text, const std::vector<Case>& cases) {
   if (const auto number = number_in(text)) return Condition::Value{.constant = *number};
   const std::size_t dot = text.find('.');
@@ -55,6 +59,7 @@ std::optional<Condition::Value> value_in(const std::string& text, const std::vec
   return value;
 }
 
+/// Condition of its text; none for a text of another form.
 std::optional<Condition> condition_in(const std::string& text, const std::vector<Case>& cases) {
   std::istringstream words(text);
   std::string left, comparison, right, sign, amount, more;
@@ -75,6 +80,7 @@ std::optional<Condition> condition_in(const std::string& text, const std::vector
   return condition;
 }
 
+/// Reader of the claims of one file; collects its faults.
 class ClaimReader : private detail::SettingsReader {
  public:
   ClaimReader(const std::string& file, std::string_view quotations) : SettingsReader{file}, file_{file} {
@@ -95,7 +101,8 @@ class ClaimReader : private detail::SettingsReader {
   }
 
  private:
-  /// `{horizon_steps: [7, 20], step_length_s: [0.1, 0.2]}` as four cases, "7/0.1" to "20/0.2".
+  /// Adds the points of a grid as cases: {horizon_steps: [7, 20], step_length_s: [0.1, 0.2]} makes four, from
+  /// "7/0.1" to "20/0.2".
   void read_grid(const YamlEntry& grid, Claim& claim) {
     std::vector<Case> points{{}};
     for (const YamlEntry& entry : named(grid)) {
@@ -117,16 +124,19 @@ class ClaimReader : private detail::SettingsReader {
     claim.cases.insert(claim.cases.end(), points.begin(), points.end());
   }
 
+  /// Adds named cases.
   void read_cases(const YamlEntry& entry, Claim& claim) {
     for (const YamlEntry& each : named(entry))
       read_settings(each.value, claim.cases.emplace_back(Case{.name = each.key.text}).settings);
   }
 
+  /// Adds one column to show.
   void read_column(const YamlNode& node, Claim& claim) {
     if (!is_column(node.text)) refuse(node, "shows", "a column");
     claim.shows.push_back(node.text);
   }
 
+  /// Adds a fault if a quotation is too long, or is not among the fragments of the write-up.
   void check_quotation(int line, const std::string& quotation) {
     std::istringstream words(quotation);
     const auto count = std::distance(std::istream_iterator<std::string>(words), {});
@@ -138,6 +148,7 @@ class ClaimReader : private detail::SettingsReader {
                         quotations_file(file_)));
   }
 
+  /// Adds one claim; `shared`: settings and words of all claims of the file.
   void read_claim(const YamlNode& node, const Claim& shared) {
     Claim claim = shared;
     std::vector<const YamlNode*> conditions;
@@ -169,13 +180,15 @@ class ClaimReader : private detail::SettingsReader {
   }
 
   const std::string& file_;
-  std::string quotations_;  // text of quotations, without its comments
+  std::string quotations_;  ///< fragments of the write-up, one a line
   std::vector<Claim> claims_;
   std::set<std::string> ids_;
 };
 
+/// Whether the run of a line drove all laps and no tyre left the road.
 bool is_clean(const protocol::Json& line) { return number_of(line, "clean") > 0.0; }
 
+/// Number of one side of a condition; NaN if it was not measured.
 double value_of(const Condition::Value& value, const CaseResults& results) {
   if (value.name.empty()) return value.constant;
   const auto found = results.find(value.name);
@@ -188,13 +201,13 @@ double number_of(const protocol::Json& line, std::string_view column) {
   if (!line.is_object()) return telemetry::kNotMeasured;
   if (column == "clean")
     return line.value("completed", false) && line.value("off_track_events", 1) == 0 ? 1.0 : 0.0;
-  const ColumnPlace at = place_in(column);
+  const ColumnPlace at = column_place(column);
   const auto found = line.find(at.name);
   if (found == line.end()) return telemetry::kNotMeasured;
   const int size = found->is_array() ? static_cast<int>(found->size()) : 0;
-  const int place = at.place ? (*at.place < 0 ? size + *at.place : *at.place) : 0;
-  if (at.place && (place < 0 || place >= size)) return telemetry::kNotMeasured;
-  const protocol::Json& value = at.place ? (*found)[static_cast<std::size_t>(place)] : *found;
+  const int index = at.index ? (*at.index < 0 ? size + *at.index : *at.index) : 0;
+  if (at.index && (index < 0 || index >= size)) return telemetry::kNotMeasured;
+  const protocol::Json& value = at.index ? (*found)[static_cast<std::size_t>(index)] : *found;
   if (value.is_boolean()) return value.get<bool>() ? 1.0 : 0.0;
   return value.is_number() ? value.get<double>() : telemetry::kNotMeasured;
 }

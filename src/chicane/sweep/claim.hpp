@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Claims: statements of a write-up, each with the runs that try it and the conditions on their results.
 #pragma once
 
 #include <map>
@@ -10,63 +11,65 @@
 #include "chicane/protocol/json.hpp"
 #include "chicane/sweep/plan.hpp"
 
-/// A statement of a write-up, and how it is tried.
 namespace chicane::sweep {
 
-/// One run of the trial, with its additions to the claim's settings.
+/// One run that tries a claim.
 struct Case {
   std::string name{};
-  Settings settings{};
+  Settings settings{};  ///< additions to the claim's settings
 };
 
-/// `N40.top_speed_mps > N25.top_speed_mps * 1.02`: one number of a case, a comparison, and a number or one of
-/// another case, times a factor or plus a term. The other case `each` means every other clean one: an optimum
-/// among runs on the road.
+/// Condition on the results of cases, `N40.top_speed_mps > N25.top_speed_mps * 1.02`: a column of a case, a
+/// comparison, and a number or a column of another case, times a factor or plus a term. The name `each` on
+/// the right stands for every other clean case: the left one is then an optimum among runs on the road.
 struct Condition {
+  /// One side of a condition.
   struct Value {
     std::string name{};    ///< name of the case; empty: the number is `constant`
     std::string column{};  ///< column of trial.hpp, "lap_times_s[-1]", or "clean": all laps driven, no tyre
                            ///< off the road
     double constant = 0.0;
   };
-  std::string text{};
+  std::string text{};  ///< condition as written
   Value left{}, right{};
-  char comparison = '>';  ///< > < = (equal)
-  double factor = 1.0, term = 0.0;
+  char comparison = '>';            ///< one of > < = (equal)
+  double factor = 1.0, term = 0.0;  ///< right side: value · factor + term
 };
 
+/// Statement of a write-up. It is either tried by cases and conditions, or has a verdict in words.
 struct Claim {
   std::string id{};      ///< "B7"
-  std::string says{};    ///< paraphrased
-  std::string quotes{};  ///< the write-up's own words, at most kMostQuotedWords; empty: they were not found
-  std::string ours{};    ///< our additions to the preset, for the verdict: "with our weights"
-  Settings settings{};   ///< settings of all cases, the preset among them
+  std::string says{};    ///< paraphrase of the statement
+  std::string quotes{};  ///< quotation, at most kMostQuotedWords; empty: not found in the write-up
+  /// Values that are ours and not the write-up's, in words for the verdict: "with our weights".
+  std::string ours{};
+  Settings settings{};  ///< settings of all cases, the preset among them
   std::vector<Case> cases{};
-  std::size_t grid_size = 0;  ///< number of last cases that are points of a grid, named by their values
-  std::vector<Condition> conditions{};  ///< true when all hold
-  std::vector<std::string> shows{};     ///< columns
+  std::size_t grid_size = 0;  ///< number of points of a grid, the last ones of `cases`, named by their values
+  std::vector<Condition> conditions{};  ///< the claim is true if all hold
+  std::vector<std::string> shows{};     ///< columns shown with the verdict
   /// Verdict on a statement that no run can try: "works", "partly" or "not so", and where to see it.
   std::string found{}, see{};
 
   [[nodiscard]] bool is_tried() const noexcept { return !cases.empty(); }
 };
 
-constexpr std::size_t kMostQuotedWords = 10;
+constexpr std::size_t kMostQuotedWords = 10;  ///< short enough for a quotation of a text by others; chosen
 
-/// The lines of a claim's cases in one world (sweep.hpp), by their names.
+/// Lines of results of a claim's cases on one track and in one reading, by the names of the cases.
 using CaseResults = std::map<std::string, protocol::Json>;
 
-/// Whether all conditions hold; a number that was not measured makes its condition false.
+/// Whether all conditions of the claim hold. A number that was not measured makes its condition false.
 [[nodiscard]] bool holds(const Claim& claim, const CaseResults& results);
-/// The number of a column in a line of results, "clean" or a place in a list ("lap_times_s[-1]") included;
-/// true is 1, and NaN where there is none.
+/// Number of a column in a line of results; also of "clean", and of an entry of a list ("lap_times_s[-1]").
+/// True is 1. NaN if the line has no such number.
 [[nodiscard]] double number_of(const protocol::Json& line, std::string_view column);
 
 /// Reads the claims of one file: `settings`, `ours`, and a list `claims` of {id, says, quotes, settings,
 /// cases: {name: {settings}}, grid: {key: [values]}, true_when: [conditions], shows: [columns]} or {id, says,
-/// quotes, found, see}. The points of the grid are cases, too: a value of each key, the last key turning
-/// fastest. `quotations` is the text of quotations_file(file): fragments of the write-up, one a line, and
-/// comments with #. kParse with all faults and their lines.
+/// quotes, found, see}. The points of the grid are cases, too: each has a value of each key, and consecutive
+/// points differ in the last key. `quotations`: text of quotations_file(file), with a fragment of the
+/// write-up in each line, and comments with #. kParse with all faults and their lines.
 [[nodiscard]] Result<std::vector<Claim>> parse_claims(std::string_view text, const std::string& file,
                                                       std::string_view quotations = "");
 /// File of quotations: "claims/quotations/NAME.txt" for "claims/NAME.yaml".

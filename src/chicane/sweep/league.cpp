@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Leagues: reads the plan, makes the sweep of our controllers, and keeps the results of other programs beside
-// it.
+// Leagues: reads the file of a league, makes the plan of our controllers, and keeps the results of other
+// programs in a file beside those of the sweep.
 #include "chicane/sweep/league.hpp"
 
 #include <fmt/format.h>
@@ -40,11 +40,14 @@ constexpr std::array kKept{"completed",
                            "mean_iterations",
                            "not_usable"};
 
+/// Reader of one league; collects the faults of the file.
 class LeagueReader : private detail::SettingsReader {
  public:
   using SettingsReader::SettingsReader;
 
   Result<League> read(const YamlNode& root) {
+    // Speeds from which every controller is clean on a good road up to more than any car here reaches;
+    // chosen.
     league_.plan.search = Search{.key = "speed_mps", .from = 8.0, .to = 80.0, .factor = 1.4};
     std::string about;
     read_map(root, "file", "a league with entries, tracks and cars",
@@ -73,6 +76,7 @@ class LeagueReader : private detail::SettingsReader {
       read_settings(each.value, league_.disturbances.emplace_back(each.key.text, Settings{}).second);
   }
 
+  /// Entries: with `server` a program, else settings of a controller of ours.
   void read_entries(const YamlEntry& entry) {
     for (const YamlEntry& each : named(entry)) {
       const std::vector<YamlEntry> parts = each.value.entries();
@@ -112,6 +116,7 @@ class LeagueReader : private detail::SettingsReader {
     }
   }
 
+  /// Makes the plan of our own controllers.
   void make_plan() {
     Axis entries = list_axis(kEntryKey, entries_.list);
     entries.dimensions.front().cases = entries_.cases;
@@ -127,9 +132,10 @@ class LeagueReader : private detail::SettingsReader {
   }
 
   League league_;
-  Dimension entries_;
+  Dimension entries_;  ///< names and settings of our own controllers
 };
 
+/// Whether a command has the place `{name}`.
 bool has_place(const std::string& command, std::string_view name) {
   return command.find(fmt::format("{{{}}}", name)) != std::string::npos;
 }
@@ -219,6 +225,7 @@ namespace {
 
 using protocol::Json;
 
+/// Key of an external trial in the file beside the results.
 std::string trial_key(const ExternalTrial& trial) {
   return protocol::json_text(Json{{"command", trial.command},
                                   {"track", trial.track},
@@ -226,6 +233,7 @@ std::string trial_key(const ExternalTrial& trial) {
                                   {kDisturbanceKey, trial.disturbance}});
 }
 
+/// Error for a file beside the results whose first line is not `wanted`.
 Error refusal_of(const std::string& path, const std::string& line, const Json& wanted) {
   const Json got = protocol::parse_json(line);
   if (!got.is_object() || !got.contains("league"))
@@ -238,10 +246,12 @@ Error refusal_of(const std::string& path, const std::string& line, const Json& w
                       words(got), words(wanted))};
 }
 
+/// Median and 99th percentile, rounded to 0.1 µs.
 Json times_of(const telemetry::TimeSummary& times) {
   return {{"p50", std::round(1e7 * times.p50) / 10.0}, {"p99", std::round(1e7 * times.p99) / 10.0}};
 }
 
+/// Reads all numbers of a line into a cell: "solve_time_us.p50" of the object solve_time_us.
 void read_numbers(const Json& json, LeagueCell& cell) {
   for (const auto& [name, value] : json.items()) {
     if (value.is_number()) cell.numbers[name] = value.get<double>();
@@ -252,6 +262,7 @@ void read_numbers(const Json& json, LeagueCell& cell) {
   }
 }
 
+/// Reason why the run of a line is not clean.
 std::string reason_in(const Json& json, const LeagueCell& cell) {
   if (const std::string error = json.value("error", ""); !error.empty()) return error;
   const double events = cell.number("off_track_events");
@@ -268,7 +279,7 @@ double LeagueCell::number(std::string_view column) const {
 
 Result<BesideFile> BesideFile::open(const std::string& path, const League& league) {
   BesideFile beside;
-  // First line of the file, by the plan alone: each trial names its command.
+  // The first line has the plan of our own controllers alone, because the key of a trial names its command.
   const Json wanted{{"league", league.name}, {"plan", fmt::format("{:016x}", league.plan.hash())}};
   const auto refuse = [&](const std::string& first) { return refusal_of(path, first, wanted); };
   const auto note = [&](const LinePlace&, const std::string& line) -> Result<void> {
@@ -340,6 +351,7 @@ Result<void> read_own(const League& league, const std::string& file, LeagueResul
   return {};
 }
 
+/// Command line that repeats an external trial.
 std::string simulate_command(const ExternalTrial& trial) {
   std::string rest;
   if (is_ros(trial)) {
@@ -352,8 +364,8 @@ std::string simulate_command(const ExternalTrial& trial) {
                      trial.track, trial.car, rest);
 }
 
-/// Reads one line of the file beside the results: a limit, the times of a run, or an external trial. The last
-/// cells of `results` belong to `trials`, in their order.
+/// Reads one line of the file beside the results: a limit, the times of a run, or an external trial. Pre: the
+/// last cells of `results` are those of `trials`, in their order.
 void read_beside(const Json& json, const std::vector<ExternalTrial>& trials, LeagueResults& results) {
   if (json.contains("limit") && json.contains("lap_time_s"))
     results.bounds[{json["limit"].value("track", ""), json["limit"].value("car", "")}] = json["lap_time_s"];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Page of a league: tables of controllers by track and car, as HTML document and Markdown.
+// Page of a league: standings, tables of controllers by track and car, and measured times, as HTML document
+// and Markdown.
 #include "chicane/sweep/league.hpp"
 
 #include <fmt/format.h>
@@ -18,15 +19,17 @@ namespace {
 
 using protocol::Json;
 
+/// Table of the page.
 struct LeagueTable {
   std::string title, note;
   ResultTable table;
 };
 
-/// Columns of the standings after the gap. The last one, iterations, is not measured of other programs.
+/// Columns of the results in the standings, after the gap. Other programs have no iterations, the last one.
 constexpr std::array kFigures{"rms_lateral_error_m", "min_edge_distance_m", "max_lateral_acceleration_mps2",
                               "steering_rate_rms_radps", "mean_iterations"};
 
+/// Maker of the tables of a league's page.
 class LeagueTables {
  public:
   LeagueTables(const League& league, const LeagueResults& results) : league_{league}, results_{results} {
@@ -36,6 +39,7 @@ class LeagueTables {
     undisturbed_ = league.disturbances.front().first;
   }
 
+  /// All tables in the order of the page.
   [[nodiscard]] std::vector<LeagueTable> all() const {
     std::vector<LeagueTable> tables{standings()};
     for (const std::string& car : league_.cars)
@@ -44,10 +48,11 @@ class LeagueTables {
     return tables;
   }
 
+  /// Lap time [s]; null if the run is not clean.
   [[nodiscard]] static Json lap_of(const LeagueCell& cell) {
     return cell.is_clean ? Json(cell.number("lap_time_s")) : Json();
   }
-  /// Excess of the lap time over the limit [%].
+  /// Excess of the lap time over the limit [%]; NaN if the run is not clean or the limit is not known.
   [[nodiscard]] double gap(const LeagueCell& cell) const {
     const auto bound = results_.bounds.find({cell.track, cell.car});
     if (bound == results_.bounds.end() || !cell.is_clean) return std::nan("");
@@ -63,15 +68,18 @@ class LeagueTables {
     return figures;
   }
 
+  /// Results of an entry over all tracks and cars.
   struct Standing {
     std::string entry;
-    int clean = 0, tried = 0, disturbed_clean = 0, disturbed = 0;
-    std::array<double, kFigures.size() + 1> sums{}, counts{};  ///< gap and kFigures, where measured
+    int clean = 0, tried = 0;                ///< numbers of clean and of all runs without disturbance
+    int disturbed_clean = 0, disturbed = 0;  ///< numbers of clean and of all runs with a disturbance
+    std::array<double, kFigures.size() + 1> sums{}, counts{};  ///< of gap and kFigures, if measured
 
     /// Mean of a figure; NaN if it was measured nowhere.
     [[nodiscard]] double mean(std::size_t i) const { return sums[i] / counts[i]; }
   };
 
+  /// Standing of an entry; sums count clean runs without disturbance.
   [[nodiscard]] Standing standing_of(const std::string& entry) const {
     Standing standing;
     standing.entry = entry;
@@ -92,13 +100,14 @@ class LeagueTables {
     return standing;
   }
 
+  /// Table of the standings, the best entry first.
   [[nodiscard]] LeagueTable standings() const {
     std::vector<Standing> all;
     for (const std::string& entry : entries_) all.push_back(standing_of(entry));
     std::stable_sort(all.begin(), all.end(), [](const Standing& a, const Standing& b) {
-      const double x = a.tried > 0 ? static_cast<double>(a.clean) / a.tried : 0.0;
-      const double y = b.tried > 0 ? static_cast<double>(b.clean) / b.tried : 0.0;
-      if (x != y) return x > y;
+      const double clean_of_a = a.tried > 0 ? static_cast<double>(a.clean) / a.tried : 0.0;
+      const double clean_of_b = b.tried > 0 ? static_cast<double>(b.clean) / b.tried : 0.0;
+      if (clean_of_a != clean_of_b) return clean_of_a > clean_of_b;
       return std::isfinite(a.mean(0)) && !(a.mean(0) >= b.mean(0));
     });
     LeagueTable table{
@@ -119,6 +128,7 @@ class LeagueTables {
     return table;
   }
 
+  /// Cell of a run; null if the entry has none.
   [[nodiscard]] const LeagueCell* find(const std::string& entry, const std::string& track,
                                        const std::string& car, const std::string& disturbance) const {
     for (const LeagueCell& cell : results_.cells)
@@ -127,6 +137,7 @@ class LeagueTables {
     return nullptr;
   }
 
+  /// Table of one track and car.
   [[nodiscard]] LeagueTable table_of(const std::string& track, const std::string& car) const {
     const auto bound = results_.bounds.find({track, car});
     std::vector<std::string> columns{"entry",
@@ -148,13 +159,14 @@ class LeagueTables {
             .table = std::move(table)};
   }
 
+  /// Row of an entry in the table of a track and car: the run without disturbance, then the laps with each.
   [[nodiscard]] ResultTable::Cells row_of(const LeagueCell& cell) const {
     ResultTable::Cells row{cell.entry, cell.why};
     if (cell.is_clean) {
       row = {cell.entry, cell.is_external ? Json("its own") : Json(cell.number(kSearchValue)), lap_of(cell)};
       for (const double figure : figures_of(cell)) row.emplace_back(figure);
     }
-    row.resize(8);
+    row.resize(8);  // columns of table_of() before the disturbances
     for (std::size_t i = 1; i < league_.disturbances.size(); ++i) {
       const LeagueCell* disturbed = find(cell.entry, cell.track, cell.car, league_.disturbances[i].first);
       row.push_back(disturbed != nullptr ? lap_of(*disturbed) : Json());
@@ -195,10 +207,11 @@ class LeagueTables {
 
   const League& league_;
   const LeagueResults& results_;
-  std::vector<std::string> entries_;
-  std::string undisturbed_;
+  std::vector<std::string> entries_;  ///< names of all entries, in the order of the league
+  std::string undisturbed_;           ///< name of the first disturbance, which is none
 };
 
+/// Sentence about all runs of the league.
 std::string in_words(const League& league, const LeagueResults& results) {
   std::string words = fmt::format("{} runs", results.cells.size());
   if (results.missing > 0) words += fmt::format(", {} of them not driven yet", results.missing);

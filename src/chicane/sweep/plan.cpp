@@ -51,10 +51,12 @@ constexpr std::array<Direction, kSobolDimensions - 1> kDirections{{
     {7, 1, {1, 3, 7, 11, 23, 15, 103}},
     {7, 4, {1, 3, 7, 13, 13, 15, 69}},
 }};
-constexpr unsigned kBits = 32;  // of a Sobol number
+constexpr unsigned kBits = 32;  // bits of a Sobol number
 
+/// Direction numbers of one dimension: the XOR of those at the set bits of an index is the coordinate.
 using SobolNumbers = std::array<std::uint32_t, kBits>;
 
+/// Direction numbers by the recurrence of Joe and Kuo; dimension 0 is the sequence of van der Corput.
 constexpr SobolNumbers directions_of(int dimension) {
   SobolNumbers v{};
   if (dimension == 0) {
@@ -79,23 +81,25 @@ constexpr auto kSobolNumbers = [] {
   return columns;
 }();
 
-/// Pseudo-random number from three arguments. The odd factors come from SplitMix64 and xxHash64.
+/// Pseudo-random number from three arguments: a pure function. The odd factors come from SplitMix64 and
+/// xxHash64.
 std::uint64_t mixed(std::uint64_t seed, std::uint64_t a, std::uint64_t b) noexcept {
   Random random(seed * 0x9e3779b97f4a7c15ULL ^ (a * 0xc2b2ae3d27d4eb4fULL) ^ (b * 0x165667b19e3779f9ULL));
   static_cast<void>(random.bits());
   return random.bits();
 }
 
-/// Place of `index` in a permutation of [0, count): a Feistel network over the next power of four, applied
-/// again until the number is below `count`.
+/// Place of `index` in a pseudo-random permutation of [0, count) that `key` chooses: a Feistel network over
+/// the next power of four, applied again until the number is below `count`.
 std::uint32_t permuted(std::uint32_t index, std::uint32_t count, std::uint64_t key) noexcept {
+  constexpr std::uint64_t kRounds = 6;  // chosen: four make a pseudo-random permutation, two to spare
   const unsigned half = (static_cast<unsigned>(std::bit_width(count - 1)) + 1) / 2;
   const std::uint64_t mask = (std::uint64_t{1} << half) - 1;
   std::uint64_t at = index;
   do {
     std::uint64_t left = at >> half;
     std::uint64_t right = at & mask;
-    for (std::uint64_t round = 0; round < 6; ++round) {
+    for (std::uint64_t round = 0; round < kRounds; ++round) {
       const std::uint64_t next = left ^ (mixed(key, right, round) & mask);
       left = right;
       right = next;
@@ -128,10 +132,11 @@ double latin_hypercube(std::uint32_t index, std::uint32_t count, int dimension, 
 
 namespace {
 
-constexpr int kDigits = 12;  // digits of a computed value: 0.3, not 0.30000000000000004
+constexpr int kDigits = 12;  // significant digits of a computed value: 0.3, not 0.30000000000000004
 
 using detail::add_text;
 
+/// Adds keys and texts of settings to a hash.
 void add_settings(Fnv& hash, const Settings& settings) {
   for (const auto& [key, text] : settings) {
     add_text(hash, key);
@@ -139,26 +144,30 @@ void add_settings(Fnv& hash, const Settings& settings) {
   }
 }
 
-using Named = std::set<std::pair<std::string, std::string>>;  ///< keys with their values, each once
+/// Kind and name of each file that runs read, each once: ("car", "udacity").
+using FileNames = std::set<std::pair<std::string, std::string>>;
 
-void add_named(const Settings& settings, Named& named) {
+/// Adds the files that settings name.
+void add_files(const Settings& settings, FileNames& files) {
   for (const auto& [key, text] : settings)
-    if (key == "preset" || key == "car" || key == "scenario" || key == "track") named.emplace(key, text);
+    if (key == "preset" || key == "car" || key == "scenario" || key == "track") files.emplace(key, text);
 }
 
-Named named_in(const Plan& plan) {
-  Named named{{"scenario", ""}};  // the defaults
-  add_named(plan.fixed, named);
+/// Files that the runs of a plan name, without those that these files name themselves.
+FileNames files_in(const Plan& plan) {
+  FileNames files{{"scenario", ""}};  // no file: the defaults
+  add_files(plan.fixed, files);
   for (const Axis& axis : plan.axes) {
     for (const Dimension& dimension : axis.dimensions) {
       if (dimension.cases.empty())
-        for (const std::string& text : dimension.list) add_named({{dimension.key, text}}, named);
-      for (const Settings& meaning : dimension.cases) add_named(meaning, named);
+        for (const std::string& text : dimension.list) add_files({{dimension.key, text}}, files);
+      for (const Settings& settings : dimension.cases) add_files(settings, files);
     }
   }
-  return named;
+  return files;
 }
 
+/// Content of a track's file, or the error message if it cannot be read.
 std::string track_bytes(const std::string& track) {
   const Result<std::string> file = protocol::locate(protocol::Shelf::kTrack, track);
   const Result<std::string> bytes = file ? protocol::read_file(*file) : fail(file.error());
@@ -184,11 +193,11 @@ std::vector<double> Search::ladder() const {
 Settings expanded(const Settings& settings, const Cases& cases) {
   Settings all;
   for (const auto& [key, text] : settings) {
-    const auto meanings = cases.find(key);
-    if (meanings == cases.end()) {
+    const auto by_name = cases.find(key);
+    if (by_name == cases.end()) {
       all.emplace_back(key, text);
-    } else if (const auto meaning = meanings->second.find(text); meaning != meanings->second.end()) {
-      all.insert(all.end(), meaning->second.begin(), meaning->second.end());
+    } else if (const auto named = by_name->second.find(text); named != by_name->second.end()) {
+      all.insert(all.end(), named->second.begin(), named->second.end());
     }
   }
   return all;
@@ -270,9 +279,9 @@ std::uint64_t Plan::hash() const {
     for (const Dimension& dimension : axis.dimensions) {
       add_text(hash, dimension.key);
       for (const std::string& text : dimension.list) add_text(hash, text);
-      for (const Settings& meaning : dimension.cases) {
-        hash.add(static_cast<std::uint64_t>(meaning.size()));
-        add_settings(hash, meaning);
+      for (const Settings& settings : dimension.cases) {
+        hash.add(static_cast<std::uint64_t>(settings.size()));
+        add_settings(hash, settings);
       }
       hash.add(dimension.from);
       hash.add(dimension.to);
@@ -289,9 +298,9 @@ std::uint64_t Plan::hash() const {
 }
 
 std::string Plan::digest_of_files() const {
-  Named named = named_in(*this);
+  FileNames files = files_in(*this);
   Fnv hash;
-  for (const auto& [key, text] : Named(named)) {
+  for (const auto& [key, text] : FileNames(files)) {  // a copy: tracks are added meanwhile
     if (key == "track") continue;
     protocol::Request request;
     if (key == "scenario") {
@@ -300,10 +309,10 @@ std::string Plan::digest_of_files() const {
       request.settings.emplace_back(key, text);
     }
     const Result<scenario::Scenario> scenario = protocol::compose(request);
-    if (scenario) named.emplace("track", scenario->track);
+    if (scenario) files.emplace("track", scenario->track);
     add_text(hash, scenario ? protocol::write_document(*scenario, "", true) : scenario.error().message);
   }
-  for (const auto& [key, text] : named)
+  for (const auto& [key, text] : files)
     if (key == "track") add_text(hash, track_bytes(text));
   return fmt::format("{:016x}", hash.value());
 }

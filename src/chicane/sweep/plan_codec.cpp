@@ -16,8 +16,8 @@
 namespace chicane::sweep::detail {
 namespace {
 
-constexpr double kMostCount = 4294967295.0;  // largest 32-bit number
-constexpr double kLeastFactor = 1.01;        // least step of a search's ladder: bounds its trials; chosen
+constexpr double kMostCount = 4294967295.0;  // largest 32-bit number: index of a point of a sample
+constexpr double kLeastFactor = 1.01;        // least factor of a search: bounds its trials; chosen
 constexpr double kLeastWithin = 1e-4;        // finest accuracy of a search; chosen
 
 }  // namespace
@@ -118,10 +118,10 @@ namespace {
 using protocol::YamlEntry;
 using protocol::YamlNode;
 
-constexpr std::size_t kMostAxes = 20;           // chosen
-constexpr std::string_view kFolder = "/*.csv";  ///< suffix of a folder: all tracks in it
-constexpr double kMostSamples = 4294967295.0;   // largest 32-bit number
+constexpr std::size_t kMostAxes = 20;           // bounds memory and time; chosen
+constexpr std::string_view kFolder = "/*.csv";  // end of a value that stands for all tracks of a folder
 
+/// Reader of one plan; collects the faults of the file.
 class PlanReader : private detail::SettingsReader {
  public:
   using SettingsReader::SettingsReader;
@@ -144,6 +144,7 @@ class PlanReader : private detail::SettingsReader {
   }
 
  private:
+  /// One axis: `sample`, if it has one, before its keys.
   void read_axis(const YamlNode& map) {
     if (!map.is_map()) return refuse(map, "axes", "{key: [values]}");
     Axis axis;
@@ -176,6 +177,7 @@ class PlanReader : private detail::SettingsReader {
     plan_.axes.push_back(std::move(axis));
   }
 
+  /// Method, number of points and seed of a sample.
   void read_sample(const YamlNode& map, Axis& axis) {
     std::string method;
     const bool is_read = read_map(map, "sample", "{method: sobol, count: 64, seed: 1}",
@@ -186,7 +188,8 @@ class PlanReader : private detail::SettingsReader {
     if (is_read && axis.size == 0) fault(map.line, "sample.count", "got none, expected the number of points");
   }
 
-  /// The number of values; none for a range of a sample, or after a fault.
+  /// Adds one key with its values to the axis. Returns the number of values; none for a range in a sample, or
+  /// after a fault.
   std::optional<std::uint64_t> read_dimension(const YamlEntry& entry, Axis& axis) {
     Dimension dimension{.key = entry.key.text};
     std::optional<std::uint64_t> length;
@@ -215,7 +218,7 @@ class PlanReader : private detail::SettingsReader {
     return length;
   }
 
-  /// All tracks of `FOLDER/*.csv`, by name.
+  /// Adds all tracks of `FOLDER/*.csv`, sorted by name.
   void add_folder(const YamlNode& node, std::vector<std::string>& list) {
     const std::string folder = node.text.substr(0, node.text.size() - kFolder.size());
     std::vector<std::string> files;
@@ -228,10 +231,11 @@ class PlanReader : private detail::SettingsReader {
     list.insert(list.end(), files.begin(), files.end());
   }
 
-  /// `{cases: {name: {settings}, …}}`.
+  /// Whether the values of a key are named cases: `{cases: {name: {settings}, …}}`.
   static bool is_cases(const YamlNode& node) {
     return node.is_map() && node.entries().size() == 1 && node.entries().front().key.text == "cases";
   }
+  /// Named cases and their settings. Returns their number.
   std::uint64_t read_cases(const YamlEntry& entry, Dimension& dimension) {
     const YamlEntry cases = entry.value.entries().front();
     if (check_setting(dimension.key, "1") || protocol::find(dimension.key) != nullptr)
@@ -244,6 +248,8 @@ class PlanReader : private detail::SettingsReader {
     return dimension.list.size();
   }
 
+  /// Range with `count` values or a `step`. Returns the number of values; none in a sample, which has its
+  /// own, or after a fault.
   std::optional<std::uint64_t> read_range(const YamlNode& map, const Axis& axis, Dimension& dimension) {
     std::optional<double> from, to;
     double step = 0.0;
@@ -277,8 +283,8 @@ class PlanReader : private detail::SettingsReader {
       return std::nullopt;
     }
     if (count > 0) return count;
-    const double steps = std::floor((*to - *from) / step + 1e-9);
-    if (!(steps < kMostSamples)) {
+    const double steps = std::floor((*to - *from) / step + 1e-9);  // 1e-9: rounding of a range of whole steps
+    if (!(steps < detail::kMostCount)) {
       fault(map.line, printable(dimension.key), "expected fewer steps");
       return std::nullopt;
     }
@@ -286,6 +292,7 @@ class PlanReader : private detail::SettingsReader {
     return static_cast<std::uint64_t>(steps) + 1;
   }
 
+  /// One marked point of the maps.
   void read_mark(const YamlNode& node) {
     if (!node.is_map()) return refuse(node, "marks", "a place");
     Settings& mark = plan_.marks.emplace_back();
@@ -295,12 +302,14 @@ class PlanReader : private detail::SettingsReader {
     }
   }
 
+  /// Adds a fault for each key of a mark that no axis has.
   void check_marks() {
     for (const auto& [line, key] : marked_)
       if (!keys_.contains(key))
         fault(line, printable(key), "got no key of an axis, expected marks at values of axes");
   }
 
+  /// One column to keep.
   void read_column(const YamlNode& node) {
     plan_.keep.push_back(node.text);
     if (find_column(node.text) != nullptr) return;
@@ -309,6 +318,7 @@ class PlanReader : private detail::SettingsReader {
     refuse(node, "keep", fmt::format("one of {}", joined(names)));
   }
 
+  /// Adds a fault if the plan has too many runs.
   void check_size(int line) {
     double size = 1.0;
     for (const Axis& axis : plan_.axes) size *= static_cast<double>(axis.size);
@@ -318,8 +328,8 @@ class PlanReader : private detail::SettingsReader {
           fmt::format("got {:.3g} runs, expected at most {:g}", size, static_cast<double>(Plan::kMostRuns)));
   }
 
-  Plan plan_;
-  std::set<std::string> keys_;
+  Plan plan_;                                        ///< as far as it is read
+  std::set<std::string> keys_;                       ///< keys of all axes
   std::vector<std::pair<int, std::string>> marked_;  ///< keys of the marks, with their lines
 };
 

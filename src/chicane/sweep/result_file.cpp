@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// File of a sweep's results: lines of JSON, checked against the plan, completed after an interruption, and
-// merged.
+// Files of results: lines of JSON, checked against the plan, completed after an interruption, and merged.
 #include "chicane/sweep/result_file.hpp"
 
 #include <fcntl.h>
@@ -24,13 +23,14 @@ namespace {
 
 using protocol::Json;
 
-constexpr std::size_t kLongestLine = 1U << 20U;  // [bytes] bounds memory; chosen
+constexpr std::size_t kLongestLine = 1U << 20U;  // [byte] bounds memory; chosen
 
+/// Error of a failed write, from errno.
 tl::unexpected<Error> io_failure(const std::string& path) {
   return fail(ErrorCode::kIo, fmt::format("{}: cannot be written: {}", path, std::strerror(errno)));
 }
 
-/// `17` of `{"run":17,…}`; none for anything else.
+/// Number of the run of a line, 17 for `{"run":17,…}`; none for another line.
 std::optional<std::uint64_t> run_of(const std::string& line) {
   constexpr std::string_view kBegin = "{\"run\":";
   if (!line.starts_with(kBegin) || !line.ends_with('}')) return std::nullopt;
@@ -40,9 +40,7 @@ std::optional<std::uint64_t> run_of(const std::string& line) {
   return run && *run < Plan::kMostRuns ? run : std::nullopt;
 }
 
-using OnLine = std::function<Result<void>(const LinePlace&, const std::string&)>;
-
-/// Adds the number of its run to each line; kParse for a line without one.
+/// Function that calls `on_line` with the number of the run of each line. kParse for a line without one.
 OnLine of_runs(const OnLine& on_line) {
   return [on_line](LinePlace place, const std::string& line) -> Result<void> {
     const std::optional<std::uint64_t> run = run_of(line);
@@ -53,13 +51,27 @@ OnLine of_runs(const OnLine& on_line) {
   };
 }
 
-/// Reads the lines about runs. `on_first` gets the first line, or an empty text if the file has no whole one.
+/// Reads the lines of runs. `on_first` gets the first line; an empty text if the file has no complete line.
 Result<void> read_results(const std::string& file,
                           const std::function<Result<void>(const std::string&)>& on_first,
                           const OnLine& on_run) {
   const auto contents = read_text_lines(file, on_first, of_runs(on_run));
   if (contents && contents->header.empty()) return on_first("");
   return contents ? Result<void>{} : fail(contents.error());
+}
+
+/// Reason why the results of two different first lines do not belong together: "the plan 12, expected 17".
+std::string difference_text(const Header& got, const Header& expected) {
+  const auto words = [](std::string_view what, const std::string& a, const std::string& b) {
+    return fmt::format("{} {}, expected {}", what, a, b);
+  };
+  if (got.plan != expected.plan) return words("the plan", got.plan, expected.plan);
+  if (got.program != expected.program) return words("the program", got.program, expected.program);
+  if (got.arithmetic != expected.arithmetic)
+    return words("the arithmetic", got.arithmetic, expected.arithmetic);
+  if (got.files != expected.files)
+    return words("presets, cars or tracks of other contents,", got.files, expected.files);
+  return "another first line, expected the same";
 }
 
 }  // namespace
@@ -122,27 +134,14 @@ Result<Header> parse_header(std::string_view line, const std::string& file) {
     header.columns = json.at("columns").get<std::vector<std::string>>();
     if (header.runs <= Plan::kMostRuns) return header;
   } catch (const Json::exception&) {
-    // the message follows
+    // reported below, as a line of too many runs is
   }
   return fail(refusal(file + ":1", line, "the first line of a sweep's results", ErrorCode::kParse));
 }
 
-std::string difference_text(const Header& got, const Header& expected) {
-  const auto words = [](std::string_view what, const std::string& a, const std::string& b) {
-    return fmt::format("{} {}, expected {}", what, a, b);
-  };
-  if (got.plan != expected.plan) return words("the plan", got.plan, expected.plan);
-  if (got.program != expected.program) return words("the program", got.program, expected.program);
-  if (got.arithmetic != expected.arithmetic)
-    return words("the arithmetic", got.arithmetic, expected.arithmetic);
-  if (got.files != expected.files)
-    return words("presets, cars or tracks of other contents,", got.files, expected.files);
-  return "another first line, expected the same";
-}
-
-Result<FileContents> read_text_lines(
-    const std::string& file, const std::function<Result<void>(const std::string&)>& on_first,
-    const std::function<Result<void>(const LinePlace&, const std::string&)>& on_line) {
+Result<FileContents> read_text_lines(const std::string& file,
+                                     const std::function<Result<void>(const std::string&)>& on_first,
+                                     const OnLine& on_line) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) return fail(ErrorCode::kNotFound, fmt::format("{}: {}", file, std::strerror(errno)));
   FileContents contents;
@@ -192,9 +191,9 @@ LineFile::~LineFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-Result<LineFile> LineFile::open(
-    const std::string& path, const std::string& first, const std::function<Error(const std::string&)>& refuse,
-    const std::function<Result<void>(const LinePlace&, const std::string&)>& on_line) {
+Result<LineFile> LineFile::open(const std::string& path, const std::string& first,
+                                const std::function<Error(const std::string&)>& refuse,
+                                const OnLine& on_line) {
   LineFile file;
   file.path_ = path;
   file.descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
@@ -254,16 +253,18 @@ Result<ResultFile> ResultFile::open(const std::string& path, const Plan& plan, c
 
 namespace {
 
-constexpr std::size_t kMostNamed = 10000;  // missing runs that are listed for a message; more are counted
-constexpr std::size_t kMostRanges = 10;    // ranges of missing runs that the message names; chosen
+// Missing runs kept for the message; more are counted: bounds memory.
+constexpr std::size_t kMostNamed = 10000;
+constexpr std::size_t kMostRanges = 10;  // ranges of missing runs in the message: some lines; chosen
 
-/// Place of a run's line in the merged files, in 16 bytes.
+/// Place of a run's line in the merged files, in 16 bytes: there may be a thousand million runs.
 struct Found {
-  std::uint32_t file = 0;
-  std::uint32_t size = 0;  ///< 0: not found
-  std::uint64_t offset = 0;
+  std::uint32_t file = 0;    ///< index of the file
+  std::uint32_t size = 0;    ///< size of the line [byte]; 0: not found
+  std::uint64_t offset = 0;  ///< begin of the line [byte]
 };
 
+/// Merges files of shards: finds the line of each run, then copies the lines in the order of the runs.
 class Merger {
  public:
   explicit Merger(const std::vector<std::string>& files) : files_{files} {
@@ -271,12 +272,14 @@ class Merger {
     for (const std::string& file : files) streams_.emplace_back(file, std::ios::binary);
   }
 
+  /// Finds the lines of all runs. Fails if one is missing, or has two different results.
   Result<void> read() {
     for (std::size_t i = 0; i < files_.size(); ++i)
       if (const Result<void> done = read(static_cast<std::uint32_t>(i)); !done) return done;
     return check_complete();
   }
 
+  /// Writes the first line and the lines of all runs.
   Result<MergeSummary> write(const std::string& output) {
     FileWriter out(output);
     out.write(header_ + '\n');
@@ -286,6 +289,7 @@ class Merger {
   }
 
  private:
+  /// Finds the lines of one file.
   Result<void> read(std::uint32_t index) {
     const std::string& file = files_[index];
     if (!streams_[index]) return fail(refusal(file + ": file", "none", "a file"));
@@ -309,6 +313,7 @@ class Merger {
     return read_results(file, begin, add);
   }
 
+  /// Keeps the place of a line; compares the text with an earlier line of the same run.
   Result<void> take(const LinePlace& place, const std::string& text, std::uint32_t index) {
     if (place.run >= found_.size())
       return fail(ErrorCode::kParse, fmt::format("got run {}, expected one of {}", place.run, found_.size()));
@@ -325,6 +330,7 @@ class Merger {
                             place.run, files_[known.file]));
   }
 
+  /// Text of a line that was found.
   std::string line(const Found& place) {
     std::string text(place.size, '\0');
     std::ifstream& stream = streams_[place.file];
@@ -334,6 +340,7 @@ class Merger {
     return text;
   }
 
+  /// Fails with the numbers of the missing runs.
   [[nodiscard]] Result<void> check_complete() const {
     std::vector<std::uint64_t> missing;
     std::uint64_t more = 0;
@@ -353,9 +360,9 @@ class Merger {
 
   const std::vector<std::string>& files_;
   std::vector<std::ifstream> streams_;
-  std::string header_;
-  std::vector<Found> found_;
-  std::uint64_t repeated_ = 0;
+  std::string header_;          ///< first line of the first file
+  std::vector<Found> found_;    ///< by run
+  std::uint64_t repeated_ = 0;  ///< runs found a second time
 };
 
 }  // namespace

@@ -22,19 +22,21 @@ namespace {
 
 using protocol::Json;
 
-/// Figures of one run that compare() compares.
+/// Figures of one run for compare().
 struct ComparedRun {
   std::vector<double> laps{};  ///< times [s]
-  std::int64_t off = 0;        ///< times off the road
+  std::int64_t off = 0;        ///< count of times off the road
   bool is_completed = false;
-  std::string reasons{};  ///< reasons of the guard with their steps
-  std::string error{};    ///< reason why it could not be driven
+  std::string reasons{};  ///< reasons of the guard with their numbers of control steps
+  std::string error{};    ///< error if it could not be driven; else empty
 
   [[nodiscard]] bool is_clean() const { return error.empty() && is_completed && off == 0; }
+  /// Mean of the first `count` lap times [s].
   [[nodiscard]] double mean(std::size_t count) const {
     return std::accumulate(laps.begin(), laps.begin() + static_cast<std::ptrdiff_t>(count), 0.0) /
            static_cast<double>(count);
   }
+  /// First, best and mean lap time, or why there are none.
   [[nodiscard]] std::string laps_text() const {
     if (!error.empty()) return error;
     if (laps.empty()) return "no lap";
@@ -44,6 +46,7 @@ struct ComparedRun {
   }
 };
 
+/// Figures of a line of results.
 ComparedRun compared_run(const Json& json) {
   ComparedRun run{.off = json.value("off_track_events", std::int64_t{0}),
                   .is_completed = json.value("completed", false),
@@ -58,7 +61,7 @@ ComparedRun compared_run(const Json& json) {
   return run;
 }
 
-/// Reason why `run` is worse than `other`; empty: it is not.
+/// Reason why `run` is worse than its twin `other`; empty if it is not.
 std::string worse_text(const ComparedRun& run, const ComparedRun& other) {
   if (!other.is_clean()) return "";
   if (!run.error.empty()) return "cannot be driven";
@@ -70,13 +73,15 @@ std::string worse_text(const ComparedRun& run, const ComparedRun& other) {
   return slower > kSlower ? fmt::format("{:.1f} % slower", 100.0 * slower) : "";
 }
 
-/// Runs by their common settings, in the order of the plan, and by the compared value.
+/// Runs in groups of equal settings but for the compared key. A group has the number of its first run.
 struct ComparedRuns {
-  std::vector<std::string> keys{};  ///< keys that they share
+  std::vector<std::string> keys{};  ///< keys of the axes but for the compared one
+  /// By group and compared value.
   std::map<std::uint64_t, std::map<std::string, ComparedRun>> by_first_run{};
-  std::map<std::vector<std::string>, std::uint64_t> first_run{};
+  std::map<std::vector<std::string>, std::uint64_t> first_run{};  ///< group by the values of `keys`
 };
 
+/// Adds the runs of one file.
 Result<void> add_results(const std::string& file, const std::string& key, ComparedRuns& found) {
   const auto check = [&](const Header& header) -> Result<void> {
     if (std::find(header.keys.begin(), header.keys.end(), key) != header.keys.end()) return {};
@@ -104,7 +109,7 @@ Result<void> add_results(const std::string& file, const std::string& key, Compar
   return read_runs(file, check, add);
 }
 
-/// A value of RFC 4180, in quotes where it has to be.
+/// Text as a value of RFC 4180, with quotes if needed.
 std::string csv_cell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -112,9 +117,10 @@ std::string csv_cell(const std::string& text) {
   return quoted + "\"";
 }
 
-/// Text unchanged, all else as JSON; empty for null.
+/// JSON value as a value of RFC 4180; empty for null.
 std::string cell_of(const Json& value) { return value.is_null() ? "" : csv_cell(plain_text(value)); }
 
+/// Table of a comparison, without rows.
 ResultTable empty_table(const ComparedRuns& found, const std::string& key, const std::string& value) {
   std::vector<std::string> columns;
   for (const std::string& each : found.keys) columns.push_back("=" + each + "{}");
@@ -124,20 +130,20 @@ ResultTable empty_table(const ComparedRuns& found, const std::string& key, const
   return ResultTable(columns);
 }
 
-/// Text of a cell for people; objects stay.
+/// Cell for people: a text; an object stays as it is.
 Json shown_cell(const Json& cell, const std::string& decimals) {
   if (cell.is_null()) return "–";
   if (cell.is_number_float()) return fmt::format(fmt::runtime("{:" + decimals + "f}"), cell.get<double>());
   return cell.is_object() ? cell : Json(plain_text(cell));
 }
 
-/// Number of letters in a text of UTF-8: its bytes without the continuing ones.
+/// Number of letters in a text of UTF-8: its bytes but for continuation bytes.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
-/// Text of a cell for programs.
+/// Cell for programs.
 std::string csv_text(const Json& cell) {
   if (cell.is_boolean()) return cell.get<bool>() ? "1" : "0";
   return cell.is_number() ? number_text(cell.get<double>()) : cell_of(cell);
@@ -168,8 +174,6 @@ void ResultTable::add(Cells cells) {
   rows_.push_back(std::move(cells));
 }
 
-/// Text of the table: a line of titles, `rule`, and a line for each row. The first `shared` columns have a
-/// line of their own above the rows with the same values.
 std::string ResultTable::lines(std::size_t shared, std::string_view begin, std::string_view rule,
                                std::string (*write)(const Column&, const std::string&)) const {
   const auto line = [&](std::span<const Column> columns, const auto& cell_of) {
@@ -190,9 +194,10 @@ std::string ResultTable::lines(std::size_t shared, std::string_view begin, std::
 }
 
 std::string ResultTable::text() const {
+  constexpr std::size_t kMostWide = 81;  // columns of a terminal, and the blank after the last cell
   std::size_t wide = 0, shared = 0;
   for (const Column& column : for_people_) wide += column.width + 1;
-  for (; wide > 81 && shared + 1 < for_people_.size(); ++shared) wide -= for_people_[shared].width + 1;
+  for (; wide > kMostWide && shared + 1 < for_people_.size(); ++shared) wide -= for_people_[shared].width + 1;
   return lines(shared, "", "", [](const Column& column, const std::string& cell) {
     return fmt::format(fmt::runtime("{:" + column.alignment + "{}} "), cell, column.width);
   });
@@ -294,12 +299,13 @@ namespace {
 
 using Values = std::set<std::string, ByNumber>;
 
+/// Index of a value; values.size() if there is none.
 std::size_t place_in(const std::vector<std::string>& values, const std::string& value) {
   return static_cast<std::size_t>(std::find(values.begin(), values.end(), value) - values.begin());
 }
 
-/// Place of the value nearest to `wanted` if both are numbers, otherwise of the same text; values.size():
-/// none.
+/// Index of the number nearest to `wanted`, or of the same text if there are no numbers; values.size() if
+/// there is none.
 std::size_t nearest_place(const std::vector<std::string>& values, const std::string& wanted) {
   const std::optional<double> number = number_in(wanted);
   const auto distance = [&](const std::string& value) {
@@ -311,6 +317,7 @@ std::size_t nearest_place(const std::vector<std::string>& values, const std::str
   return place_in(values, best != values.end() && std::isfinite(distance(*best)) ? *best : wanted);
 }
 
+/// Maker of the heat maps of one set of runs.
 class MapMaker {
  public:
   MapMaker(const std::vector<std::string>& keys, const std::vector<MapRun>& runs,
@@ -320,6 +327,7 @@ class MapMaker {
       for (std::size_t axis = 0; axis < keys.size(); ++axis) values_[axis].insert(run.values[axis]);
   }
 
+  /// All maps, of axes with at most `most` values.
   std::vector<HeatMap> all(std::size_t most) {
     std::vector<std::size_t> texts, pairable;
     for (std::size_t axis = 0; axis < keys_.size(); ++axis) {
@@ -327,25 +335,25 @@ class MapMaker {
       if (values_[axis].size() >= 2 && values_[axis].size() <= most) pairable.push_back(axis);
     }
     std::vector<HeatMap> maps;
-    for (const std::vector<std::string>& group : groups_of(texts))
+    const auto add_pairs = [&](bool have_text, const auto& group_axes, const auto& group) {
       for (std::size_t i = 0; i < pairable.size(); ++i)
         for (std::size_t j = i + 1; j < pairable.size(); ++j)
-          if (!is_text(pairable[i]) && !is_text(pairable[j]))
-            maps.push_back(map_of(pairable[i], pairable[j], texts, group));
-    for (std::size_t i = 0; i < pairable.size(); ++i)
-      for (std::size_t j = i + 1; j < pairable.size(); ++j)
-        if (is_text(pairable[i]) || is_text(pairable[j]))
-          maps.push_back(map_of(pairable[i], pairable[j], {}, {}));
+          if ((is_text(pairable[i]) || is_text(pairable[j])) == have_text)
+            maps.push_back(map_of(pairable[i], pairable[j], group_axes, group));
+    };
+    for (const std::vector<std::string>& group : groups_of(texts)) add_pairs(false, texts, group);
+    add_pairs(true, std::vector<std::size_t>{}, std::vector<std::string>{});
     return maps;
   }
 
  private:
+  /// Whether an axis has a value that is no number.
   [[nodiscard]] bool is_text(std::size_t axis) const {
     return std::any_of(values_[axis].begin(), values_[axis].end(),
                        [](const std::string& value) { return !number_in(value); });
   }
 
-  /// Combinations of these axes' values, in the order of the runs.
+  /// Combinations of the values of some axes, in the order of the runs.
   [[nodiscard]] std::vector<std::vector<std::string>> groups_of(const std::vector<std::size_t>& axes) const {
     std::vector<std::vector<std::string>> groups;
     for (const MapRun& run : runs_) {
@@ -356,6 +364,7 @@ class MapMaker {
     return groups;
   }
 
+  /// Map of the axes `a` (rows) and `b`, of the runs whose values on `group_axes` are `group`.
   [[nodiscard]] HeatMap map_of(std::size_t a, std::size_t b, const std::vector<std::size_t>& group_axes,
                                const std::vector<std::string>& group) const {
     HeatMap map{.title = fmt::format("{}", fmt::join(group, ", ")),
@@ -378,6 +387,7 @@ class MapMaker {
     return map;
   }
 
+  /// Marks a cell, if the mark is in the group of the map.
   void set_mark(HeatMap& map, const Settings& mark, const std::vector<std::size_t>& group_axes,
                 const std::vector<std::string>& group) const {
     const std::map<std::string, std::string> values(mark.begin(), mark.end());
@@ -395,7 +405,7 @@ class MapMaker {
   const std::vector<std::string>& keys_;
   const std::vector<MapRun>& runs_;
   const std::vector<Settings>& marks_;
-  std::vector<Values> values_;
+  std::vector<Values> values_;  ///< values of each axis
 };
 
 }  // namespace
@@ -412,7 +422,7 @@ std::vector<HeatMap> heat_maps(const std::vector<std::string>& keys, const std::
 }
 
 std::string map_text(const HeatMap& map) {
-  std::size_t head = 0, width = 5;
+  std::size_t head = 0, width = 5;  // of the rows' values, and of a column: "[100]" at least
   for (const std::string& row : map.rows) head = std::max(head, width_of(row));
   for (const std::string& column : map.columns) width = std::max(width, width_of(column) + 1);
   std::string text = fmt::format("{}{} down, {} across\n{:{}}", map.title.empty() ? "" : map.title + ": ",

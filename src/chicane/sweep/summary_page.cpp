@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Summary of a sweep: groups of runs, tables and maps, as HTML document and Markdown.
+// Summary of a sweep (result_table.hpp): groups of runs, tables and heat maps, as HTML document and Markdown.
 
 #include <fmt/format.h>
 
@@ -24,14 +24,16 @@ using detail::ByNumber;
 using protocol::ReportDocument;
 using json = protocol::Json;
 
-constexpr std::size_t kMostValues = 60;  // values on an axis of a table; more become intervals; chosen
-constexpr int kMostBins = 12;            // limit of these intervals; chosen
+constexpr std::size_t kMostValues = 60;  // values of an axis in a table; more become intervals; chosen
+constexpr int kMostBins = 12;            // limit of these intervals: fits a map on a screen; chosen
+constexpr int kFewestBins = 4;           // least number of these intervals; chosen
+constexpr double kRunsInCell = 10.0;     // wanted runs in a cell of a map: shares to 10 %
 constexpr std::size_t kMostMaps = 60;    // limit of maps on a page; chosen
 
-/// Columns of the tables, if the sweep has kept them; `is_low_good`: the mean is shown, otherwise the least.
+/// Column of the tables, if the sweep has kept it.
 struct Shown {
-  const char *column, *title;
-  bool is_low_good;
+  const char *column, *title;  ///< name in the results, and title
+  bool is_low_good;            ///< tables show the mean; of other columns the least value
 };
 constexpr std::array kShown{Shown{"search_value", "largest clean value", false},
                             Shown{"lap_time_s", "last lap [s]", true},
@@ -42,19 +44,20 @@ constexpr std::array kShown{Shown{"search_value", "largest clean value", false},
                             Shown{"max_lateral_acceleration_mps2", "lateral acceleration, most [m/s²]", true},
                             Shown{"mean_iterations", "iterations", true}};
 
+/// Run of the sweep.
 struct Run {
   std::uint64_t number = 0;
-  std::vector<std::string> values;  ///< values of the axes
-  std::array<double, kShown.size()> numbers{};
-  bool is_clean = false;  ///< no tyre off the road, and all laps driven if a number was set
-  std::string error;
+  std::vector<std::string> values;              ///< values of the axes
+  std::array<double, kShown.size()> numbers{};  ///< values of kShown; NaN: not known
+  bool is_clean = false;  ///< no tyre off the road, and all laps driven if the settings have a number of laps
+  std::string error;      ///< reason why it cannot be driven; else empty
 };
 
-/// Counts, sums, least and greatest values of a group of runs.
+/// Statistics of a group of runs.
 struct Group {
-  std::uint64_t runs = 0, clean = 0;
-  std::array<double, kShown.size()> sums{}, least{}, most{};
-  std::array<std::uint64_t, kShown.size()> counts{};
+  std::uint64_t runs = 0, clean = 0;                          ///< number of runs, and of clean ones
+  std::array<double, kShown.size()> sums{}, least{}, most{};  ///< of the known values of kShown
+  std::array<std::uint64_t, kShown.size()> counts{};          ///< numbers of known values of kShown
 
   void add(const Run& run) {
     ++runs;
@@ -72,10 +75,13 @@ struct Group {
   }
 };
 
+/// Number with four digits; a dash if it is not known.
 std::string figure(double value) { return std::isfinite(value) ? number_text(value, 4) : "–"; }
 
+/// Results of a sweep, and the pages about them.
 class Page {
  public:
+  /// Reads the files of all parts. A run that comes twice counts once.
   Result<void> read(const std::vector<std::string>& files) {
     std::vector<bool> seen;
     for (const std::string& file : files) {
@@ -104,7 +110,7 @@ class Page {
   [[nodiscard]] std::uint64_t runs() const { return runs_.size(); }
   [[nodiscard]] const std::string& name() const { return header_.name; }
 
-  /// Text for a page of docs/: driven runs, and the maps in letters.
+  /// Text for a page of docs/: number of runs, and the maps of numbers as text.
   [[nodiscard]] std::string markdown() {
     bin_values();
     std::string page = fmt::format("{} runs", runs_.size());
@@ -122,6 +128,7 @@ class Page {
     return page + "```\n";
   }
 
+  /// HTML document of the summary, as protocol/json.hpp has it.
   [[nodiscard]] std::string document() {
     ReportDocument document("sweep", header_.name);
     document.add_text(fmt::format(
@@ -146,6 +153,7 @@ class Page {
         std::count_if(runs_.begin(), runs_.end(), [](const Run& run) { return run.is_clean; }));
   }
 
+  /// Adds the run of a line.
   void add(std::uint64_t number, const json& line) {
     Run run;
     run.number = number;
@@ -161,7 +169,7 @@ class Page {
     runs_.push_back(std::move(run));
   }
 
-  /// Whether the run has a number of laps to complete.
+  /// Whether the settings of a run have a number of laps.
   [[nodiscard]] bool wants_laps(const Run& run) const {
     std::string laps;
     for (const auto& [key, value] : header_.fixed)
@@ -171,12 +179,13 @@ class Page {
     return laps != "0";
   }
 
-  /// Number of intervals that leaves some ten runs to a cell of a map.
+  /// Number of intervals on each of two axes that leaves kRunsInCell runs to a cell.
   static int bins_for(std::size_t runs) {
-    return std::clamp(static_cast<int>(std::sqrt(static_cast<double>(runs) / 10.0)), 4, kMostBins);
+    return std::clamp(static_cast<int>(std::sqrt(static_cast<double>(runs) / kRunsInCell)), kFewestBins,
+                      kMostBins);
   }
 
-  /// Cuts axes with too many values for a table, such as a sample's, into intervals.
+  /// Fills binned_: divides the range of an axis with more than kMostValues numbers into equal intervals.
   void bin_values() {
     binned_.assign(runs_.size(), {});
     const int bins = bins_for(runs_.size());
@@ -203,6 +212,7 @@ class Page {
     }
   }
 
+  /// Whether the results have column `i` of kShown.
   [[nodiscard]] bool is_kept(std::size_t i) const {
     return std::find(header_.columns.begin(), header_.columns.end(), kShown[i].column) !=
            header_.columns.end();
@@ -215,6 +225,7 @@ class Page {
     return first;
   }
 
+  /// Table with a row for each value of an axis.
   void add_table(ReportDocument& document, std::size_t axis) const {
     std::map<std::string, Group, ByNumber> groups;
     for (std::size_t i = 0; i < runs_.size() && groups.size() <= kMostValues; ++i)
@@ -236,6 +247,7 @@ class Page {
     document.add_table(with_columns({header_.keys[axis], "runs", "clean"}), std::move(rows));
   }
 
+  /// Section of the heat maps.
   void add_maps(ReportDocument& document) const {
     const std::vector<detail::HeatMap> all = maps();
     if (all.empty()) return;
@@ -261,7 +273,7 @@ class Page {
     }
   }
 
-  /// The share of clean runs over pairs of axes.
+  /// Heat maps of the runs that could be driven; the first kMostMaps.
   [[nodiscard]] std::vector<detail::HeatMap> maps() const {
     std::vector<detail::MapRun> runs;
     for (std::size_t i = 0; i < runs_.size(); ++i)
@@ -271,6 +283,7 @@ class Page {
     return maps;
   }
 
+  /// Histogram of one column.
   void add_histogram(ReportDocument& document, std::size_t column) const {
     std::vector<double> values;
     for (const Run& run : runs_)
@@ -279,9 +292,9 @@ class Page {
     std::sort(values.begin(), values.end());
     const double low = values.front(), high = values.back();
     if (high <= low) return;
-    constexpr int kBars = 24;
+    constexpr int kBars = 24;  // chosen
     const double width = (high - low) / kBars;
-    std::vector<double> bars;
+    std::vector<double> bars;  // four numbers each: left end, bottom, width, height
     for (int i = 0; i < kBars; ++i)
       for (const double number : {low + i * width, 0.0, width, 0.0}) bars.push_back(number);
     for (const double value : values)
@@ -292,7 +305,7 @@ class Page {
     document.add_series("cells", "soft", "", bars);
   }
 
-  /// Settings that drive a run.
+  /// Settings that drive a run again; with a search the largest clean value.
   [[nodiscard]] Settings settings_of(const Run& run) const {
     Settings varied;
     for (std::size_t axis = 0; axis < header_.keys.size(); ++axis)
@@ -304,6 +317,7 @@ class Page {
     return settings;
   }
 
+  /// Section of the runs with their commands.
   void add_listing(ReportDocument& document) const {
     document.begin_section("Runs");
     document.add_text(fmt::format(
@@ -329,9 +343,9 @@ class Page {
   }
 
   Header header_;
-  std::vector<Run> runs_;
-  std::vector<std::vector<std::string>>
-      binned_;  ///< the values of the runs, in intervals where they are many
+  std::vector<Run> runs_;  ///< by number
+  /// Values of the axes by run; an axis with many values has the middle of the interval.
+  std::vector<std::vector<std::string>> binned_;
 };
 
 }  // namespace

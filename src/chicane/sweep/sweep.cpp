@@ -21,11 +21,12 @@
 namespace chicane::sweep {
 namespace {
 
-constexpr int kSearchDigits = 4;  // digits of a tried value: 12.35
+constexpr int kSearchDigits = 4;  // significant digits of a tried value: 12.35; chosen
 
+/// Text as a JSON string.
 std::string quoted(const std::string& text) { return protocol::json_text(protocol::Json(text)); }
 
-/// Value of a setting as JSON: a number, or a quoted text.
+/// Value of a setting as JSON: numbers and booleans as such, texts in quotes.
 std::string setting_json(const std::string& key, const std::string& text) {
   const protocol::Parameter* row = protocol::find(key);
   const bool is_text = row != nullptr && (row->option.kind == protocol::Kind::kText ||
@@ -34,18 +35,19 @@ std::string setting_json(const std::string& key, const std::string& text) {
   return is_json ? text : quoted(text);
 }
 
-/// Count of found, driven and failed runs, for all threads, and the first error of writing the file.
+/// Progress counted by all threads, and the first error of writing the file.
 class Tally {
  public:
   Tally(const SweepOptions& options, Progress progress) : options_{options}, progress_{progress} {}
 
-  /// Counts a run. `why`: reason why it cannot be driven; null if it was driven.
-  void add(const Error* why) {
+  /// Counts a run. `why_not`: error if it cannot be driven; null if it was driven.
+  void add(const Error* why_not) {
     const std::lock_guard lock(mutex_);
     ++progress_.driven;
-    if (why != nullptr && progress_.failed++ == 0) progress_.why = why->message;
+    if (why_not != nullptr && progress_.failed++ == 0) progress_.why = why_not->message;
     if (options_.on_progress) options_.on_progress(progress_);
   }
+  /// Keeps an error of writing the file, if it is the first.
   void fail_with(const Error& error) {
     const std::lock_guard lock(mutex_);
     if (!error_) error_ = error;
@@ -64,7 +66,7 @@ class Tally {
   std::optional<Error> error_;
 };
 
-/// Line of a run with the members of an object, or the reason why it cannot be driven.
+/// Line of a run with the members of a JSON object, or with the error if it cannot be driven.
 std::string line_with(std::uint64_t run, const Settings& varied, const Result<std::string>& object) {
   std::string line = fmt::format("{{\"run\":{},\"settings\":{{", run);
   for (std::size_t i = 0; i < varied.size(); ++i) {
@@ -75,7 +77,7 @@ std::string line_with(std::uint64_t run, const Settings& varied, const Result<st
                         : fmt::format("}},\"error\":{}}}", quoted(object.error().message)));
 }
 
-/// The columns that the plan keeps, as a JSON object.
+/// Columns that the plan keeps, and always the state hash, as a JSON object.
 std::string columns_of(const Plan& plan, const RunOutcome& outcome) {
   std::string text;
   if (plan.search)
@@ -103,14 +105,14 @@ class Searcher {
   Result<std::optional<RunOutcome>> find() {
     const std::vector<double> ladder = search_.ladder();
     for (const double value : ladder) {
-      const Trial trial = is_clean(value, value == ladder.back());
+      const Trial trial = drive_with(value, value == ladder.back());
       if (trial == Trial::kStopped) return std::optional<RunOutcome>{};
       if (trial == Trial::kClean) break;
     }
     if (found_.search_trials == 0) return fail(refusal_);
     while (found_.search_value > 0.0 && unclean_ > found_.search_value * (1.0 + search_.within)) {
       const double middle = std::sqrt(found_.search_value * unclean_);
-      if (is_clean(middle, false) == Trial::kStopped) return std::optional<RunOutcome>{};
+      if (drive_with(middle, false) == Trial::kStopped) return std::optional<RunOutcome>{};
     }
     return std::optional(std::move(found_));
   }
@@ -118,32 +120,34 @@ class Searcher {
  private:
   enum class Trial { kClean, kNotClean, kStopped };
 
-  Trial is_clean(double wanted, bool is_last) {
+  /// Drives with `wanted`, rounded to kSearchDigits. `is_last`: smallest value, whose run is the result even
+  /// if it is not clean.
+  Trial drive_with(double wanted, bool is_last) {
     const std::string text = number_text(wanted, kSearchDigits);
     const double value = number_in(text).value_or(wanted);
-    Settings tried = settings_;
-    tried.emplace_back(search_.key, text);
-    auto driven = drive(tried, roads_, stop_, is_last ? Until::kItsEnd : Until::kOffRoad);
-    if (!driven) {  // a value that this controller does not take
+    Settings settings = settings_;
+    settings.emplace_back(search_.key, text);
+    auto driven = drive(settings, roads_, stop_, is_last ? Until::kItsEnd : Until::kOffRoad);
+    if (!driven) {  // the controller refuses this value
       refusal_ = driven.error();
       unclean_ = value;
       return Trial::kNotClean;
     }
     if (!*driven) return Trial::kStopped;
     ++found_.search_trials;
-    const bool clean = telemetry::completed_on_road(**driven);
-    if (clean || is_last) found_.run = std::move(**driven);
-    (clean ? found_.search_value : unclean_) = value;
-    return clean ? Trial::kClean : Trial::kNotClean;
+    const bool is_clean = telemetry::completed_on_road(**driven);
+    if (is_clean || is_last) found_.run = std::move(**driven);
+    (is_clean ? found_.search_value : unclean_) = value;
+    return is_clean ? Trial::kClean : Trial::kNotClean;
   }
 
   const Search& search_;
   const Settings& settings_;
   run::Roads& roads_;
   const std::atomic<bool>& stop_;
-  RunOutcome found_;
-  double unclean_ = 0.0;  ///< smallest tried value above the clean ones; 0: none yet
-  Error refusal_{ErrorCode::kInvalidArgument, ""};
+  RunOutcome found_;                                ///< result so far
+  double unclean_ = 0.0;                            ///< smallest value that was not clean; 0: none yet
+  Error refusal_{ErrorCode::kInvalidArgument, ""};  ///< error of the last value that could not be driven
 };
 
 /// Outcome of a run of a plan, driven once or searched.
@@ -166,17 +170,16 @@ Result<std::optional<telemetry::RunSummary>> drive(const Settings& settings, run
   const auto loop = run::ClosedLoop::create(*scenario, roads);
   if (!loop && stop) return std::optional<telemetry::RunSummary>{};  // planning was stopped
   if (!loop) return fail(loop.error());
-  const bool is_hasty = until == Until::kOffRoad;
-  telemetry::RunSummary summary = run::run_closed_loop(
-      **loop, {}, [&] { return stop.load() || (is_hasty && (*loop)->world().off_track_events > 0); });
+  telemetry::RunSummary summary = run::run_closed_loop(**loop, {}, [&] {
+    return stop.load() || (until == Until::kOffRoad && (*loop)->world().off_track_events > 0);
+  });
   if (stop && !(*loop)->is_over()) return std::optional<telemetry::RunSummary>{};
   return std::optional(std::move(summary));
 }
 
 Result<std::optional<RunOutcome>> find_largest(const Search& search, const Settings& settings,
                                                run::Roads& roads, const std::atomic<bool>& stop) {
-  Searcher searcher(search, settings, roads, stop);
-  return searcher.find();
+  return Searcher(search, settings, roads, stop).find();
 }
 
 std::string line_of(const Plan& plan, std::uint64_t run, const Settings& varied,
@@ -189,9 +192,9 @@ Result<Progress> drive_plan(const Plan& plan, const run::Shard& shard, const Swe
                             const RunRule& rule, const std::atomic<bool>& stop) {
   Result<ResultFile> file = ResultFile::open(options.file, plan, shard);
   if (!file) return fail(file.error());
-  const std::uint64_t ours = shard.size(plan.size());
-  Tally tally(options, {.runs = ours, .found = file->done()});
-  run::for_each_run(ours, options.jobs, [&](std::uint64_t i, run::Roads& roads) {
+  const std::uint64_t shard_size = shard.size(plan.size());
+  Tally tally(options, {.runs = shard_size, .found = file->done()});
+  run::for_each_run(shard_size, options.jobs, [&](std::uint64_t i, run::Roads& roads) {
     const std::uint64_t run = i * shard.count + shard.index;
     if (file->has(run)) return !stop;
     if (stop) return false;

@@ -24,16 +24,17 @@ namespace {
 using telemetry::LapSummary;
 using telemetry::RunSummary;
 
+/// Number as JSON; null if it is not finite.
 std::string json_number(double value) { return std::isfinite(value) ? number_text(value) : "null"; }
 
-/// A column made of a function from run to number.
+/// Column of a number: `Get` is a member of the run or a function of it.
 template <auto Get>
 constexpr Column number(std::string_view name, std::string_view meaning) {
   return {name, meaning,
           [](const RunSummary& run) { return json_number(static_cast<double>(std::invoke(Get, run))); }};
 }
 
-/// A column with a list that has a number for each lap.
+/// Column of a list with one number for each lap.
 template <auto Member>
 constexpr Column laps(std::string_view name, std::string_view meaning) {
   return {name, meaning, [](const RunSummary& run) {
@@ -44,7 +45,7 @@ constexpr Column laps(std::string_view name, std::string_view meaning) {
           }};
 }
 
-/// A column with one of the facts about the run's guard.
+/// Column of one fact about the guard of the run; null without a guard.
 template <auto Member>
 constexpr Column guard_column(std::string_view name, std::string_view meaning) {
   return {name, meaning, [](const RunSummary& run) -> std::string {
@@ -53,6 +54,7 @@ constexpr Column guard_column(std::string_view name, std::string_view meaning) {
           }};
 }
 
+/// Object with the number of control steps for each reason of the guard.
 std::string guard_reasons(const RunSummary& run) {
   std::string text = "{";
   for (const auto& word : controller::kGuardReasonWords) {
@@ -63,15 +65,18 @@ std::string guard_reasons(const RunSummary& run) {
   return text + "}";
 }
 
+/// Time of the last completed lap [s].
 double flying_lap(const RunSummary& run) {
   return run.laps.empty() ? telemetry::kNotMeasured : run.laps.back().lap_time;
 }
+/// Time of the fastest completed lap [s].
 double best_lap(const RunSummary& run) {
   double best = telemetry::kNotMeasured;
   for (const LapSummary& lap : run.laps) best = lap.lap_time < best || std::isnan(best) ? lap.lap_time : best;
   return best;
 }
 
+/// Length of the car's path in the last completed lap [m].
 double driven_in_last_lap(const RunSummary& run) {
   return run.laps.empty() ? telemetry::kNotMeasured : run.laps.back().mean_speed * run.laps.back().lap_time;
 }
@@ -133,8 +138,9 @@ const Column* find_column(std::string_view name) {
 
 namespace {
 
-constexpr std::string_view kFaultPart = "fault.";
+constexpr std::string_view kFaultPart = "fault.";  // begin of the keys of a fault in parts
 
+/// Part of `fault` that a key sets; null for another key.
 std::string* part_of(protocol::FaultText& fault, std::string_view key) {
   if (key == "fault.name") return &fault.name;
   if (key == "fault.at_s") return &fault.at;
@@ -143,13 +149,16 @@ std::string* part_of(protocol::FaultText& fault, std::string_view key) {
   return nullptr;
 }
 
+/// Speed of a text, in its own unit; none for a text that is no number in (0, 1e6), an arbitrary limit.
 std::optional<double> speed_in(const std::string& text) {
   const std::optional<double> value = number_in(text);
   return value && *value > 0.0 && *value < 1e6 ? value : std::nullopt;
 }
 
+/// Whether the key sets the reference speed of whichever controller drives.
 bool is_speed(std::string_view key) { return key == "speed_mph" || key == "speed_mps"; }
 
+/// Checks one part of a fault, in a fault whose other parts are valid.
 Result<void> check_fault_part(std::string_view key, const std::string& text) {
   protocol::FaultText fault;
   fault.name = std::string(sim::fault_kinds().front().name);
@@ -166,18 +175,22 @@ Result<void> check_fault_part(std::string_view key, const std::string& text) {
   return event ? Result<void>{} : fail(event.error());
 }
 
+/// Whether neither a shell nor a URL gives the character a meaning of its own: letters, digits, '-', '_',
+/// '.'.
+bool is_plain(char c) {
+  return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' || c == '_' ||
+         c == '.';
+}
+
 /// Text encoded as a browser's URLSearchParams reads it.
 std::string url_encoded(std::string_view text) {
   std::string encoded;
-  for (const char c : text) {
-    const bool is_plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
-                          c == '-' || c == '_' || c == '.';
-    encoded += is_plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
-  }
+  for (const char c : text)
+    encoded += is_plain(c) ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
   return encoded;
 }
 
-/// Settings in which each key stands once, with its last value at the last place.
+/// Settings with each key once: its last value, at the place where that stands.
 Settings winning(const Settings& settings) {
   Settings last;
   for (const auto& setting : settings) {
@@ -187,7 +200,7 @@ Settings winning(const Settings& settings) {
   return last;
 }
 
-/// Key and value of the reference speed, for the controller that drives; none without a scenario.
+/// Reference speed as a setting of the controller that drives; none if the request is no valid scenario.
 std::optional<std::pair<std::string, std::string>> speed_setting(const protocol::Request& request) {
   const Result<scenario::Scenario> scenario = protocol::compose(request);
   if (!scenario) return std::nullopt;
@@ -250,11 +263,10 @@ Result<scenario::Scenario> scenario_of(const Settings& settings) {
 }
 
 std::string shell_word(const std::string& text) {
-  const bool is_plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
-    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
-           std::string_view("-_./:=+@,%*").find(static_cast<char>(c)) != std::string_view::npos;
-  });
-  if (is_plain && text.find('*') == std::string::npos) return text;
+  const auto needs_no_quotes = [](char c) {
+    return is_plain(c) || std::string_view("/:=+@,%").find(c) != std::string_view::npos;
+  };
+  if (!text.empty() && std::all_of(text.begin(), text.end(), needs_no_quotes)) return text;
   std::string quoted = "'";
   for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return quoted + "'";

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// One run of a sweep: its settings, the columns that its results keep (none that a clock measured), and the
+// command and link that repeat it.
 #pragma once
 
 #include <span>
@@ -10,11 +12,9 @@
 #include "chicane/sweep/plan.hpp"
 #include "chicane/telemetry/metrics.hpp"
 
-/// Columns that a sweep keeps of a run: none that a clock measured.
-
 namespace chicane::sweep {
 
-/// One column of the results.
+/// Column of the results.
 struct Column {
   std::string_view name;     ///< name with its unit: "rms_lateral_error_m"
   std::string_view meaning;  ///< one sentence
@@ -23,9 +23,9 @@ struct Column {
   std::string (*text)(const telemetry::RunSummary&) = nullptr;
 };
 
-/// Columns of a run that has searched (plan.hpp), before all others: the value found, null where there is
-/// none, and how many runs it took. The other columns are for the run with that value, or with the smallest
-/// value tried.
+/// Columns of a run with a search (plan.hpp), before all others: the largest clean value, null if no value
+/// was clean, and the number of runs driven for it. All other columns describe the run with that value, or
+/// with the smallest value tried if none was clean.
 inline constexpr std::string_view kSearchValue = "search_value";
 inline constexpr std::string_view kSearchTrials = "search_trials";
 

@@ -30,84 +30,73 @@
 #include <nlopt.h>
 #endif
 
-namespace chicane::sweep::detail {
+namespace chicane::sweep {
+namespace {
+
+using protocol::Json;
 
 /// Log of all evaluations, so that none is driven twice: in memory, and optionally in a file with a JSON
 /// object in each line. The first line identifies the task.
 class TuneLog {
  public:
-  /// Reads a file that is there; an empty path: no file. kInvalidArgument when it belongs to another `head`;
-  /// kParse "FILE:LINE: …"; kIo.
-  [[nodiscard]] static Result<TuneLog> open(const std::string& path, const std::string& head);
+  /// Opens the log, and reads a file that exists; an empty path: no file. kInvalidArgument for a file with
+  /// another first line than `head`; kParse "FILE:LINE: …"; kIo.
+  [[nodiscard]] static Result<TuneLog> open(const std::string& path, const std::string& head) {
+    TuneLog log;
+    if (path.empty()) return log;
+    const auto refuse = [&](const std::string&) {
+      return Error{ErrorCode::kInvalidArgument,
+                   fmt::format("{}: got the log of another search or program, expected one of this; --log "
+                               "names another file",
+                               path)};
+    };
+    const auto take = [&](const LinePlace&, const std::string& line) -> Result<void> {
+      try {
+        log.verdicts_.insert(evaluation_in(line));
+      } catch (const Json::exception&) {
+        return fail(ErrorCode::kParse, fmt::format("got {}, expected an evaluation", printable(line)));
+      }
+      return {};
+    };
+    Result<LineFile> file = LineFile::open(path, head, refuse, take);
+    if (!file) return fail(file.error());
+    log.file_ = std::move(*file);
+    return log;
+  }
 
   /// Verdict on a tuning; null: not driven yet.
-  [[nodiscard]] const Verdict* find(const Settings& values) const;
+  [[nodiscard]] const Verdict* find(const Settings& values) const {
+    const auto found = verdicts_.find(values);
+    return found == verdicts_.end() ? nullptr : &found->second;
+  }
+
   /// Adds a verdict. kIo if its line cannot be written.
-  [[nodiscard]] Result<void> add(const Settings& values, const Verdict& verdict);
+  [[nodiscard]] Result<void> add(const Settings& values, const Verdict& verdict) {
+    verdicts_[values] = verdict;
+    Json json{{"values", json_of(values)}};
+    Verdict::rows(verdict, [&](const char* name, auto value) { json[name] = value; });
+    return file_.append(protocol::json_text(json));
+  }
 
  private:
+  /// Tuning and verdict of a line. Throws Json::exception for another line.
+  static std::pair<Settings, Verdict> evaluation_in(const std::string& line) {
+    const Json json = protocol::parse_json(line);
+    std::pair<Settings, Verdict> read{settings_in(json.at("values")), {}};
+    Verdict::rows(read.second, [&](const char* name, auto& value) {
+      const Json& member = json.at(name);
+      value = std::numeric_limits<std::remove_reference_t<decltype(value)>>::quiet_NaN();
+      if (!member.is_null()) member.get_to(value);
+    });
+    return read;
+  }
+
   LineFile file_{};
   std::map<Settings, Verdict> verdicts_{};
 };
 
-namespace {
-
-using protocol::Json;
-
-std::string line_of(const Settings& values, const Verdict& verdict) {
-  Json json{{"values", json_of(values)}};
-  Verdict::rows(verdict, [&](const char* name, auto value) { json[name] = value; });
-  return protocol::json_text(json);
-}
-
-std::pair<Settings, Verdict> read_line(const std::string& line) {
-  const Json json = protocol::parse_json(line);
-  std::pair<Settings, Verdict> read{settings_in(json.at("values")), {}};
-  Verdict::rows(read.second, [&](const char* name, auto& value) {
-    const Json& member = json.at(name);
-    value = std::numeric_limits<std::remove_reference_t<decltype(value)>>::quiet_NaN();
-    if (!member.is_null()) member.get_to(value);
-  });
-  return read;
-}
-
-}  // namespace
-
-Result<TuneLog> TuneLog::open(const std::string& path, const std::string& head) {
-  TuneLog log;
-  if (path.empty()) return log;
-  const auto refuse = [&](const std::string&) {
-    return Error{ErrorCode::kInvalidArgument,
-                 fmt::format("{}: got the log of another search or program, expected one of this; --log "
-                             "names another file",
-                             path)};
-  };
-  const auto take = [&](const LinePlace&, const std::string& line) -> Result<void> {
-    try {
-      log.verdicts_.insert(read_line(line));
-    } catch (const Json::exception&) {
-      return fail(ErrorCode::kParse, fmt::format("got {}, expected an evaluation", printable(line)));
-    }
-    return {};
-  };
-  Result<LineFile> file = LineFile::open(path, head, refuse, take);
-  if (!file) return fail(file.error());
-  log.file_ = std::move(*file);
-  return log;
-}
-
-const Verdict* TuneLog::find(const Settings& values) const {
-  const auto found = verdicts_.find(values);
-  return found == verdicts_.end() ? nullptr : &found->second;
-}
-
-Result<void> TuneLog::add(const Settings& values, const Verdict& verdict) {
-  verdicts_[values] = verdict;
-  return file_.append(line_of(values, verdict));
-}
-
-/// First line of a task's log: settings and their scenario, keys, objective, program and its arithmetic. The
-/// optimiser is left out, because it changes no evaluation.
+/// First line of the log of a task: settings and their scenario, keys, objective, program and its arithmetic.
+/// It leaves out the optimiser, which changes no evaluation.
 std::string tune_head(const TuneTask& task, const scenario::Scenario& scenario,
                       const std::vector<std::string>& keys) {
   const Json json{{"tune", json_of(task.settings)},
@@ -119,27 +108,27 @@ std::string tune_head(const TuneTask& task, const scenario::Scenario& scenario,
   return protocol::json_text(json);
 }
 
-}  // namespace chicane::sweep::detail
+constexpr int kTuningDigits = 6;            // significant digits of a tuned value; chosen
+constexpr double kTimeLimitByHand = 600.0;  // [s] limit of a trial of the tuning by hand; chosen
+constexpr double kPatience = 1.5;           // time limit of another tuning over the time by hand; chosen
+constexpr double kWeightFactor = 10.0;      // factor down and up of searched weights; chosen
+constexpr double kOtherFactor = 2.0;        // factor down and up of other searched numbers; chosen
 
-namespace chicane::sweep {
-namespace {
-
-constexpr int kTuningDigits = 6;            // digits of a tuned value
-constexpr double kTimeLimitByHand = 600.0;  // [s] of a trial of the tuning by hand; chosen
-constexpr double kPatience = 1.5;  // time limit of other tunings over the time of the one by hand; chosen
-
-/// Number that is varied, on a logarithmic scale between its bounds.
+/// Number that is tuned, on a logarithmic scale between its bounds.
 struct Knob {
   std::string key;
-  double low = 0.0, high = 0.0, by_hand = 0.0;
+  double low = 0.0, high = 0.0, by_hand = 0.0;  ///< bounds, and the value of the preset
   bool is_integer = false;
+  /// Value at a share of the scale, as text.
   [[nodiscard]] std::string at(double share) const {
     const double value = std::clamp(low * exp(share * log(high / low)), low, high);
     return number_text(is_integer ? std::round(value) : value, kTuningDigits);
   }
+  /// Share of the scale at which the value by hand is.
   [[nodiscard]] double share() const { return std::clamp(log(by_hand / low) / log(high / low), 0.0, 1.0); }
 };
 
+/// Knob of a key. kInvalidArgument if the key is no number above zero.
 Result<Knob> knob_of(const scenario::Scenario& scenario, const std::string& key) {
   const protocol::Parameter* row = protocol::find(key);
   const bool is_number = row != nullptr && (row->option.kind == protocol::Kind::kNumber ||
@@ -148,16 +137,17 @@ Result<Knob> knob_of(const scenario::Scenario& scenario, const std::string& key)
   if (!is_number || !(value > 0.0) || !std::isfinite(value)) {
     return fail(refusal("--over", key, "a number above zero of this preset"));
   }
-  const double factor = key.find("weight") != std::string::npos ? 10.0 : 2.0;
+  const double factor = key.find("weight") != std::string::npos ? kWeightFactor : kOtherFactor;
   Knob knob{key, std::max(value / factor, row->option.minimum), std::min(value * factor, row->option.maximum),
             value, row->option.kind == protocol::Kind::kInteger};
   if (knob.low <= 0.0) knob.low = value / factor;
   return knob;
 }
 
+/// Judge of tunings: drives their trials, and keeps the best one.
 class Tuner {
  public:
-  Tuner(const TuneTask& task, std::vector<Knob> knobs, double latency, detail::TuneLog& log,
+  Tuner(const TuneTask& task, std::vector<Knob> knobs, double latency, TuneLog& log,
         const std::atomic<bool>& stop, const std::function<void(int, const Verdict*)>& on_evaluation)
       : task_{task},
         knobs_{std::move(knobs)},
@@ -171,7 +161,8 @@ class Tuner {
   /// Drives the tuning by hand, before all others.
   void judge_by_hand() {
     is_by_hand_ = true;
-    for (std::size_t i = 0; i < trials_.size(); ++i) add(tuning_.by_hand, i, run(i, {}, kTimeLimitByHand));
+    for (std::size_t i = 0; i < trials_.size(); ++i)
+      count_in(tuning_.by_hand, i, run(i, {}, kTimeLimitByHand));
     is_by_hand_ = false;
     tuning_.by_hand.passed = tuning_.by_hand.driven;
     tuning_.found = tuning_.by_hand;
@@ -180,7 +171,7 @@ class Tuner {
   /// Whether enough different tunings were tried, or the search was stopped.
   [[nodiscard]] bool is_over() const { return stop_ || failure_ || tuning_.evaluations >= task_.evaluations; }
   [[nodiscard]] int evaluations() const { return tuning_.evaluations; }
-  /// Best point so far; the tuning by hand if there is none.
+  /// Shares of the knobs of the best tuning so far; of the tuning by hand if there is none.
   [[nodiscard]] std::vector<double> best_point() const {
     std::vector<double> point = best_point_;
     if (point.empty())
@@ -188,7 +179,7 @@ class Tuner {
     return point;
   }
 
-  /// The score of a point, lower is better; keeps the best.
+  /// Score of a point, given as shares of the knobs: lower is better. Keeps the best point.
   double score(const double* shares) {
     if (is_over()) return kWorst;
     Settings values;
@@ -212,6 +203,7 @@ class Tuner {
     return score;
   }
 
+  /// Best tuning, or the error of writing the log.
   [[nodiscard]] Result<Tuning> result() {
     if (failure_) return fail(failure_->code, failure_->message);
     tuning_.is_better = has_passed(tuning_.found) && tuning_.found.is_clean() &&
@@ -219,22 +211,24 @@ class Tuner {
     return tuning_;
   }
 
+  /// Score of a tuning that was not driven: above all others.
  private:
-  static constexpr double kWorst = 1e6;  ///< objective of a tuning that was not driven
-  using Run = Result<std::optional<telemetry::RunSummary>>;
+  static constexpr double kWorst = 1e6;
+  using Run = Result<std::optional<telemetry::RunSummary>>;  ///< as drive() returns it
   /// Result of a trial with the tuning by hand.
   struct ByHand {
     double distance = 0.0;    ///< [m]
     double time_limit = 0.0;  ///< limit for other tunings [s]
   };
 
+  /// Whether the tuning passed all trials.
   [[nodiscard]] bool has_passed(const Verdict& verdict) const {
     return verdict.passed == static_cast<int>(trials_.size());
   }
 
-  /// Objective of a verdict, lower is better. Lap and steering come from the first trial, and the margin
-  /// is the least one, so that further trials can only worsen it. The factors were chosen: they bring metres,
-  /// rad/s and seconds to one scale. 1000: no lap.
+  /// Objective of a verdict: lower is better. Further trials can only worsen it, because lap and steering
+  /// come from the first trial and the margin is the least of all. The factors are chosen: they bring metres,
+  /// rad/s and seconds to one scale. 1000 [s] stands for no lap.
   [[nodiscard]] double objective(const Verdict& verdict) const {
     const double lap = std::isfinite(verdict.lap_time) ? verdict.lap_time : 1000.0;
     switch (task_.objective) {
@@ -248,9 +242,9 @@ class Tuner {
     return -10.0 * verdict.margin + 0.1 * lap;
   }
 
-  /// Score of a verdict, lower is better. Only its order counts: 1e4 for each trial that is not passed, and
-  /// for the failed one at most 6000 if it was clean, by objective and margin, else from 7000 on, by its
-  /// progress.
+  /// Score of a verdict: lower is better. Only the order of scores counts. The numbers are chosen so that
+  /// ranges do not overlap: 1e4 for each trial that was not passed; for the failed trial up to 6000 by
+  /// objective and margin if it was clean, else 7000 to 8000 by its progress.
   [[nodiscard]] double score_of(const Verdict& verdict) const {
     const int missing = static_cast<int>(trials_.size()) - verdict.passed;
     if (missing == 0) return objective(verdict);
@@ -262,6 +256,7 @@ class Tuner {
     return 1e4 * missing + failure;
   }
 
+  /// Verdict from the log, or by driving; empty if the search was stopped or the log cannot be written.
   [[nodiscard]] std::optional<Verdict> known_or_driven(const Settings& values) {
     if (const Verdict* const known = log_.find(values)) return *known;
     const Verdict verdict = judge(values);
@@ -273,17 +268,18 @@ class Tuner {
     return verdict;
   }
 
+  /// Drives the trials of a tuning until it fails one.
   [[nodiscard]] Verdict judge(const Settings& values) {
     Verdict verdict;
     const auto passes = [&](std::size_t i, const Run& run) {
-      add(verdict, i, run);
+      count_in(verdict, i, run);
       const bool goes_on = verdict.is_clean() && verdict.margin >= tuning_.by_hand.margin &&
                            objective(verdict) <= objective(tuning_.by_hand);
       if (goes_on) ++verdict.passed;
       return goes_on;
     };
     if (!passes(0, run(0, values, by_hand_[0].time_limit))) return verdict;
-    // Drive trials ahead on several threads; the result does not depend on their number.
+    // Drive all trials ahead on several threads; the verdict does not depend on their number.
     std::vector<Run> ahead(trials_.size());
     if (task_.jobs > 1) {
       run::for_each_run(trials_.size() - 1, task_.jobs, [&](std::uint64_t i, run::Roads&) {
@@ -296,6 +292,7 @@ class Tuner {
     return verdict;
   }
 
+  /// Drives one trial of a tuning for at most `time_limit` [s].
   [[nodiscard]] Run run(std::size_t trial, const Settings& values, double time_limit) {
     Settings settings{{"guard.mode", "off"}, {"laps", "2"}};
     for (const Settings* more :
@@ -305,11 +302,12 @@ class Tuner {
     return drive(settings, roads_[trial], stop_, is_by_hand_ ? Until::kItsEnd : Until::kOffRoad);
   }
 
-  void add(Verdict& verdict, std::size_t trial, const Run& run) {
+  /// Counts the run of a trial in a verdict.
+  void count_in(Verdict& verdict, std::size_t trial, const Run& run) {
     if (verdict.driven++ == 0) verdict.margin = std::numeric_limits<double>::infinity();
     if (!run || !*run) {
       ++verdict.unfinished;
-      verdict.margin = std::min(verdict.margin, -100.0);
+      verdict.margin = std::min(verdict.margin, -100.0);  // [m] below every real margin: nothing was driven
       verdict.progress = 0.0;
       return;
     }
@@ -332,22 +330,23 @@ class Tuner {
   std::vector<TuneTrial> trials_;
   std::vector<ByHand> by_hand_;    ///< result of each trial by hand
   std::vector<run::Roads> roads_;  ///< one for each trial: no two of them share one
-  detail::TuneLog& log_;
+  TuneLog& log_;
   const std::atomic<bool>& stop_;
   const std::function<void(int, const Verdict*)>& on_evaluation_;
-  bool is_by_hand_ = false;
-  std::optional<Error> failure_;
-  Tuning tuning_;
-  std::set<Settings> tried_;
-  std::vector<double> best_point_;
-  double best_ = std::numeric_limits<double>::infinity();
+  bool is_by_hand_ = false;         ///< the tuning by hand is being driven
+  std::optional<Error> failure_;    ///< error of writing the log
+  Tuning tuning_;                   ///< best so far
+  std::set<Settings> tried_;        ///< different tunings
+  std::vector<double> best_point_;  ///< shares of the knobs of the best tuning; empty: none yet
+  double best_ = std::numeric_limits<double>::infinity();  ///< score of the best tuning
 };
 
 #ifdef CHICANE_HAS_NLOPT
-/// One search from `point` with first steps of `step`, until it converges or Tuner::is_over().
+/// Searches once from `point` with first steps of `step`, both as shares of the knobs, until the search
+/// converges or the tuner is over.
 nlopt_result search_from(std::vector<double> point, double step, const TuneTask& task, Tuner& tuner) {
   constexpr std::array kAlgorithms{NLOPT_GN_CRS2_LM, NLOPT_GN_DIRECT_L, NLOPT_LN_SBPLX};
-  constexpr int kSameAgain = 20;  // NLopt counts repeated tunings, too: its limit is this many times ours
+  constexpr int kSameAgain = 20;  // NLopt counts repeated tunings, too: its limit over ours; chosen
   struct Context {
     Tuner& tuner;
     nlopt_opt search;
@@ -373,12 +372,14 @@ nlopt_result search_from(std::vector<double> point, double step, const TuneTask&
   return result;
 }
 
-/// Searches again and again from the best point, each time with smaller first steps, until nothing new is
-/// found.
+/// Searches from the best point, again and again with smaller first steps, until a search finds no new
+/// tuning.
 Result<void> search(const TuneTask& task, Tuner& tuner) {
   nlopt_srand(static_cast<unsigned long>(task.seed));
+  constexpr double kFirstStep = 0.1,
+                   kSmaller = 0.7;  // share of a knob's scale, factor of each search; chosen
   int before = -1;
-  for (double step = 0.1; !tuner.is_over() && tuner.evaluations() > before; step *= 0.7) {
+  for (double step = kFirstStep; !tuner.is_over() && tuner.evaluations() > before; step *= kSmaller) {
     before = tuner.evaluations();
     const nlopt_result result = search_from(tuner.best_point(), step, task, tuner);
     if (result < 0 && result != NLOPT_ROUNDOFF_LIMITED && result != NLOPT_FORCED_STOP)
@@ -431,7 +432,7 @@ Result<Tuning> tune(const TuneTask& task, const std::atomic<bool>& stop,
   if (knobs.empty())
     return fail(ErrorCode::kInvalidArgument,
                 fmt::format("--over: {} has nothing to tune", scenario->controller));
-  Result<detail::TuneLog> log = detail::TuneLog::open(task.log, detail::tune_head(task, *scenario, keys));
+  Result<TuneLog> log = TuneLog::open(task.log, tune_head(task, *scenario, keys));
   if (!log) return fail(log.error());
   Tuner tuner(task, knobs, scenario->latency, *log, stop, on_evaluation);
   tuner.judge_by_hand();

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Tuning: searches the numbers of a preset, such as weights, for the best objective with clean trials.
 #pragma once
 
 #include <array>
@@ -15,21 +16,23 @@
 
 namespace chicane::sweep {
 
+/// Objective: a fast lap, gentle steering, or distance to the road's edges.
 enum class Objective { kLap, kComfort, kRobust };
+/// Optimiser of NLopt: controlled random search, DIRECT_L, or Subplex.
 enum class Optimizer { kCrs, kDirect, kSbplx };
 inline constexpr std::array<std::string_view, 3> kObjectiveNames{"lap", "comfort", "robust"};
 inline constexpr std::array<std::string_view, 3> kOptimizerNames{"crs", "direct", "sbplx"};
 
 /// Task of a tuning, and its objective.
 struct TuneTask {
-  Settings settings{};              ///< preset, car, track and what else stays
-  std::vector<std::string> over{};  ///< keys of numbers to change; empty: default_keys()
+  Settings settings{};              ///< settings of all trials: preset, car, track
+  std::vector<std::string> over{};  ///< keys of the numbers to tune; empty: default_keys()
   Objective objective = Objective::kLap;
-  Optimizer optimizer = Optimizer::kCrs;  ///< NLopt's controlled random search, DIRECT_L, or Subplex
-  int evaluations = 500;  ///< different tunings to try, but for a search that finds no new ones
-  std::uint64_t seed = 1;
-  int jobs = 1;
-  std::string log{};  ///< file with a line for each evaluation; continued if it exists. Empty: none
+  Optimizer optimizer = Optimizer::kCrs;
+  int evaluations = 500;   ///< number of different tunings to try; fewer if the search finds no new ones
+  std::uint64_t seed = 1;  ///< seed of the random search
+  int jobs = 1;            ///< number of threads
+  std::string log{};       ///< file with a line for each evaluation; continued if it exists. Empty: none
 };
 
 /// A trial: settings in addition to the task's and the tuning's.
@@ -41,21 +44,21 @@ struct TuneTrial {
 /// `latency` [s], with 10 % less grip, and twice with 5 cm of noise on the measured position.
 [[nodiscard]] std::vector<TuneTrial> tune_trials(double latency);
 
-/// Result of a tuning's trials. The tuning by hand is driven in all of them. Another one is dropped after the
-/// first trial that shows that it cannot win: a tyre leaves the road (the run ends there), it takes half as
-/// long again as by hand, its margin is below the one by hand, or its objective is already worse.
+/// Result of the trials of a tuning. The tuning by hand, which the preset has, drives all trials. Any other
+/// tuning ends with the first trial that it does not pass: a tyre leaves the road (the run ends there), the
+/// run takes half as long again as by hand, or margin or objective are worse than by hand.
 struct Verdict {
-  double lap_time = 0.0;       ///< flying lap of the first trial [s]; not-a-number: not completed
-  double margin = 0.0;         ///< least distance of a tyre to the edge in the trials driven [m]
-  double steering_rate = 0.0;  ///< rms of the first trial [rad/s]
-  double progress = 0.0;       ///< progress of the last trial, over the way driven by hand, up to 1
-  int off_track_events = 0;    ///< count in the trials driven
-  int unfinished = 0;          ///< count of the trials driven
-  int driven = 0;              ///< trials
-  int passed = 0;              ///< trials
+  double lap_time = 0.0;       ///< flying lap of the first trial [s]; NaN: not completed
+  double margin = 0.0;         ///< least distance from a tyre to the road's edge in the driven trials [m]
+  double steering_rate = 0.0;  ///< root mean square of the steering rate in the first trial [rad/s]
+  double progress = 0.0;       ///< distance of the last driven trial over the distance by hand, at most 1
+  int off_track_events = 0;    ///< count in the driven trials
+  int unfinished = 0;          ///< number of driven trials without all laps
+  int driven = 0;              ///< number of driven trials
+  int passed = 0;              ///< number of passed trials
   [[nodiscard]] bool is_clean() const noexcept { return off_track_events == 0 && unfinished == 0; }
 
-  /// Tells `row` the name in JSON and the place of each number. `Self`: Verdict, const or not.
+  /// Calls `row` with the key in JSON and the member of each number. `Self`: Verdict, const or not.
   template <class Self, class Row>
   static void rows(Self& verdict, Row&& row) {
     row("lap_time_s", verdict.lap_time);
@@ -69,24 +72,25 @@ struct Verdict {
   }
 };
 
+/// Result of tune().
 struct Tuning {
-  Settings values{};  ///< values of the changed keys
-  Verdict by_hand{}, found{};
-  bool is_better = false;  ///< better than by hand: clean, with a better objective and no less margin
-  int evaluations = 0;
-  std::int64_t runs = 0;  ///< runs of all evaluations, those from the log included
+  Settings values{};           ///< best values of the tuned keys
+  Verdict by_hand{}, found{};  ///< verdicts on the preset's values and on the best ones
+  bool is_better = false;      ///< better than by hand: clean, with a better objective and no less margin
+  int evaluations = 0;         ///< number of different tunings
+  std::int64_t runs = 0;       ///< number of runs of all evaluations, those from the log included
 };
 
-/// The weights, horizon and speed of the scenario's controller, as far as they are numbers above zero.
+/// Keys of the weights, horizon and speeds of the scenario's controller that are numbers above zero.
 [[nodiscard]] std::vector<std::string> default_keys(const scenario::Scenario& scenario);
 
-/// Searches each key from a tenth to ten times its value, speeds and horizons from half to twice, inside its
-/// range. A tuning that passes every trial is better than one that fails, and a later failure is better than
-/// an earlier one. The optimisers need this order alone, so that a losing tuning's remaining trials are not
-/// driven. Deterministic for a seed, also when a log is continued. Ends early with the best so far when
-/// `stop` is set. `on_evaluation` gets each evaluation, and its verdict where it is the best so far.
-/// kInvalidArgument for keys that are no numbers and for a log of another task or program; kIo where this was
-/// built without NLopt or the log cannot be written.
+/// Searches weights from a tenth to ten times their value, other numbers from half to twice, inside their
+/// ranges. A tuning that passes every trial is better than one that fails, and a later failure is better than
+/// an earlier one. The optimisers use nothing but this order, so the trials after a failure need not be
+/// driven. Deterministic for a seed, also if a log is continued. Ends early with the best so far when `stop`
+/// is set. `on_evaluation`: called with the number of each evaluation, and its verdict if it is the best so
+/// far, else null. kInvalidArgument for keys that are no numbers, and for the log of another task or program;
+/// kIo in a build without NLopt, or if the log cannot be written.
 [[nodiscard]] Result<Tuning> tune(const TuneTask& task, const std::atomic<bool>& stop,
                                   const std::function<void(int, const Verdict*)>& on_evaluation = {});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Situation of a run: its kind from one frame, and the sentences for people, as one table.
+// Situation of a run: its kind, computed from one frame, and the sentences for people in one table.
 #include "chicane/telemetry/frame.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ using controller::Rung;
 using Kind = SituationKind;
 using Driver = Situation::Driver;
 
-/// The table. #: Situation::number, @: where.
+/// Situations with name, severity and sentence. # stands for Situation::number, @ for the corner.
 constexpr std::array<Word<Kind>, 19> kKinds{{
     {Kind::kStands, "stands", Severity::kOk, "The car stands"},
     {Kind::kGrip, "grip", Severity::kOk, "Grip: # %@"},
@@ -41,27 +41,29 @@ constexpr std::array<Word<Kind>, 19> kKinds{{
 
 constexpr const Word<Kind>& row_of(Kind kind) noexcept { return kKinds[static_cast<std::size_t>(kind)]; }
 
-// Thresholds of the applied pedal.
-constexpr double kNoPedal = 0.005;  // smaller pedals are shown as 0 %
-constexpr double kPedal = 0.05;     // smaller pedals roll
-constexpr double kFullThrottle = 0.98;
-// Thresholds of the grip.
-constexpr double kNearLimit = 75.0;  // [%] from which it is what limits the car
-constexpr double kStillNear = 70.0;  // [%]
-constexpr double kApproach = 100.0;  // [m] before a corner from which it is named
-// Thresholds of the speed; between the two a car keeps its kind.
-constexpr double kStanding = 0.1;  // [m/s]
-constexpr double kMoving = 0.3;    // [m/s]
+// All chosen. Thresholds of the applied pedal, as share of full throttle or braking.
+constexpr double kNoPedal = 0.005;      // smaller pedals are shown as 0 %
+constexpr double kPedal = 0.05;         // with smaller pedals the car rolls
+constexpr double kFullThrottle = 0.98;  // least pedal that counts as full throttle
+// Thresholds of the used grip.
+constexpr double kNearLimit = 75.0;  // [%] use from which grip limits the car
+constexpr double kStillNear = 70.0;  // [%] use down to which grip still limits the car
+constexpr double kApproach = 100.0;  // [m] distance before a corner from which the corner is named
+// Thresholds of the speed; between the two the car counts as before.
+constexpr double kStanding = 0.1;  // [m/s] speed below which a car stands
+constexpr double kMoving = 0.3;    // [m/s] speed above which a car moves
 
+/// Speed of the car, true if it is known, else measured [m/s].
 double speed_of(const Frame& frame) noexcept {
   return frame.has_truth ? chicane::hypot(frame.truth.vx, frame.truth.vy) : frame.measurement.speed;
 }
 
-/// [%]; NaN: unknown.
+/// Grip that the axle nearest its limit uses [%]; NaN: unknown.
 double used_grip(const Frame& frame) noexcept {
   return 100.0 * std::fmax(frame.tire_use[0], frame.tire_use[1]);
 }
 
+/// Applied pedal as share of full throttle or, negative, of full braking.
 double pedal_of(const Frame& frame, double full_brake) noexcept {
   const double throttle = frame.applied.throttle;
   return throttle < 0.0 ? std::max(-1.0, throttle / full_brake) : std::min(1.0, throttle);
@@ -79,7 +81,7 @@ Driver driver_of(const Frame& frame) noexcept {
   }
 }
 
-/// Motion under the applied command, by weight: grip, brakes, full throttle, rolls, part throttle.
+/// Kind of the motion under the applied command. `grip`: used_grip() [%], `pedal`: pedal_of().
 Kind motion_of(double grip, double pedal) noexcept {
   if (grip >= kNearLimit) return Kind::kGrip;
   if (pedal <= -kPedal) return Kind::kBrakes;
@@ -87,7 +89,8 @@ Kind motion_of(double grip, double pedal) noexcept {
   return pedal < kPedal ? Kind::kRolls : Kind::kPartThrottle;
 }
 
-/// Whether a sentence of motion_of() is still true.
+/// Whether a kind of motion_of() still holds; wider than its conditions there, so that sentences do not
+/// flicker.
 bool is_true(Kind kind, double grip, double pedal) noexcept {
   switch (kind) {
     case Kind::kGrip:
@@ -105,7 +108,7 @@ bool is_true(Kind kind, double grip, double pedal) noexcept {
   }
 }
 
-/// Warning of the guard while the controller's command is sent; kStands: none.
+/// Kind of the guard's warning while the controller's command is sent; kStands: no warning.
 Kind warning_of(GuardReason reason) noexcept {
   switch (reason) {
     case GuardReason::kNone:
@@ -122,6 +125,7 @@ Kind warning_of(GuardReason reason) noexcept {
   }
 }
 
+/// Kind of a cycle in which another command than the controller's was sent.
 Kind replaced_by(Rung rung, bool stands) noexcept {
   switch (rung) {
     case Rung::kShiftedPlan:
@@ -137,7 +141,7 @@ Kind replaced_by(Rung rung, bool stands) noexcept {
   }
 }
 
-/// The weightiest row that holds.
+/// Kind with the highest weight of those that hold.
 Kind kind_of(const Frame& frame, const Situation& now, double grip) noexcept {
   const bool is_off_road = frame.is_judged && frame.is_off_track;
   if (frame.is_manual) return is_off_road ? Kind::kOffRoad : Kind::kPersonDrives;
@@ -151,13 +155,14 @@ Kind kind_of(const Frame& frame, const Situation& now, double grip) noexcept {
   return motion_of(grip, now.pedal);
 }
 
+/// Whether `s` lies in a corner, which may contain the start line.
 bool is_in(const road::Corner& corner, double s) noexcept {
   return corner.begin <= corner.end ? corner.begin <= s && s <= corner.end
                                     : s >= corner.begin || s <= corner.end;
 }
 
-/// The corner that the car is in, else the next one before the road's end, where it is near.
-void place(double s, std::span<const road::Corner> corners, Situation& now) noexcept {
+/// Sets the corner of the car at `s`, or the next one ahead within kApproach.
+void set_corner(double s, std::span<const road::Corner> corners, Situation& now) noexcept {
   double nearest = kApproach;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const double distance = corners[i].begin - s;
@@ -170,6 +175,7 @@ void place(double s, std::span<const road::Corner> corners, Situation& now) noex
   }
 }
 
+/// Words between a sentence and the number of its corner; empty: the corner is not named.
 std::string_view before_corner(const Situation& now) noexcept {
   if (!now.is_ahead) return " in T";
   switch (now.kind) {
@@ -185,7 +191,7 @@ std::string_view before_corner(const Situation& now) noexcept {
   }
 }
 
-/// End of a condition by itself, after "It ends ".
+/// Clause on what ends a condition of the guard, after "It ends ".
 std::string_view end_of(GuardReason reason) noexcept {
   const safety::Condition* row = safety::condition_of(reason);
   switch (row == nullptr ? safety::ConditionEnd::kByMotion : row->ends) {
@@ -221,7 +227,7 @@ Situation situation_of(const Frame& frame, const Situation& before, const Situat
   const bool stood = last.stands_since >= 0.0;
   if (stood ? !(speed > kMoving) : speed < kStanding)
     now.stands_since = stood && !frame.is_manual ? last.stands_since : frame.time;
-  if (frame.is_judged) place(frame.s, terms.corners, now);
+  if (frame.is_judged) set_corner(frame.s, terms.corners, now);
 
   const double grip = used_grip(frame);
   now.kind = kind_of(frame, now, grip);

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <system_error>
 
 #include "chicane/base/compiler.hpp"
@@ -19,6 +20,7 @@
 namespace chicane::telemetry::mcap {
 namespace {
 
+/// CRC of each byte, by the reflected polynomial 0xedb88320.
 constexpr std::array<std::uint32_t, 256> make_table() {
   std::array<std::uint32_t, 256> table{};
   for (std::uint32_t i = 0; i < 256; ++i) {
@@ -49,9 +51,11 @@ namespace {
 using mcap::Fields;
 using mcap::Opcode;
 
-constexpr std::size_t kChunkBytes = 1U << 20U;
-constexpr std::size_t kMostUnwritten = 4U << 20U;  // limit of a chunk that cannot be written [byte]
+// Chosen.
+constexpr std::size_t kChunkBytes = 1U << 20U;     // [byte] size at which a chunk is written
+constexpr std::size_t kMostUnwritten = 4U << 20U;  // [byte] limit of a chunk that cannot be written
 
+/// Bytes of a record.
 std::string record(Opcode opcode, std::string_view content) {
   std::string bytes;
   bytes.reserve(mcap::kRecordHead + content.size());
@@ -61,13 +65,14 @@ std::string record(Opcode opcode, std::string_view content) {
   return bytes;
 }
 
+/// Keys and texts as one field.
 std::string pairs(const std::map<std::string, std::string>& entries) {
   std::string bytes;
   for (const auto& [key, value] : entries) Fields(bytes).text(key).text(value);
   return bytes;
 }
 
-/// Zstandard at the fastest level.
+/// Bytes compressed by Zstandard at the fastest level.
 std::string compressed_bytes(std::string_view bytes) {
   constexpr int kFastest = 1;
   std::string compressed(ZSTD_compressBound(bytes.size()), '\0');
@@ -78,9 +83,9 @@ std::string compressed_bytes(std::string_view bytes) {
   return compressed;
 }
 
-/// None if the bytes are damaged, or do not yield `size` bytes.
+/// Decompressed bytes; none if the input is damaged, or does not yield `size` bytes.
 std::optional<std::string> plain_bytes(std::string_view bytes, std::uint64_t size) {
-  constexpr std::uint64_t kMost = 256U << 20U;  // the size is read from the file and not to be trusted
+  constexpr std::uint64_t kMost = 256U << 20U;  // chosen: `size` comes from the file, which may be forged
   if (size > kMost) return std::nullopt;
   std::string plain(static_cast<std::size_t>(size), '\0');
   if (ZSTD_decompress(plain.data(), plain.size(), bytes.data(), bytes.size()) != plain.size())
@@ -108,7 +113,6 @@ Result<std::unique_ptr<McapWriter>> McapWriter::create(const std::string& path, 
 
 McapWriter::~McapWriter() { static_cast<void>(close()); }
 
-/// All of it or nothing.
 Result<void> McapWriter::put(std::string_view bytes) {
   if (!state_) return state_;
   const std::uint64_t size = bytes.size();
@@ -195,8 +199,6 @@ Result<void> McapWriter::write(std::uint16_t channel, std::uint64_t log_time, st
   return chunk_.size() >= kChunkBytes ? flush() : Result<void>{};
 }
 
-/// The chunk and the indexes of its messages, as they are in the file at position_; and its record for the
-/// summary.
 std::string McapWriter::chunk_records(std::string& index) const {
   std::string content;
   Fields(content).number(chunk_start_).number(chunk_end_).number(std::uint64_t{chunk_.size()});
@@ -235,7 +237,6 @@ Result<void> McapWriter::flush() {
   return {};
 }
 
-/// Everything from the summary to the end of the file, which begins at position_.
 std::string McapWriter::summary() const {
   std::string schemas, channels, counts, statistics;
   for (std::size_t id = 0; id < channels_.size(); ++id) {
@@ -273,7 +274,7 @@ std::string McapWriter::summary() const {
 
 Result<void> McapWriter::close() {
   if (file_ < 0) return state_;
-  std::string no_crc;  // every chunk and attachment has its own
+  std::string no_crc;  // 0: no CRC of the whole file, because every chunk and attachment has one
   Fields(no_crc).number(std::uint32_t{0});
   Result<void> done = flush();
   if (done) done = put(record(Opcode::kDataEnd, no_crc));
@@ -289,16 +290,19 @@ namespace {
 using mcap::FieldReader;
 using mcap::Opcode;
 
-constexpr std::uint64_t kMostRecord = 256U << 20U;  // limit of one record [byte]
-constexpr std::size_t kMostKept = 64U << 20U;       // limit of schemas and channels of one file [byte]
-constexpr std::size_t kMostEntries = 10000;         // limit of one metadata record
+// Chosen: sizes in a file may be forged.
+constexpr std::uint64_t kMostRecord = 256U << 20U;  // [byte] limit of one record
+constexpr std::size_t kMostKept = 64U << 20U;       // [byte] limit of schemas and channels of one file
+constexpr std::size_t kMostEntries = 10000;         // limit of the entries of a metadata record
 
+/// Reads a file record by record, and hands intact content to a visitor.
 class Reader {
  public:
   Reader(const std::string& path, const McapVisitor& visitor) : path_{path}, visitor_{visitor} {}
 
   Result<McapReport> read() {
-    std::error_code error;  // a pipe or a device would not end
+    std::error_code
+        error;  // ignored: a missing file fails below. Pipes and devices, which may not end, are refused
     if (std::filesystem::exists(path_, error) && !std::filesystem::is_regular_file(path_, error))
       return fail(ErrorCode::kParse, path_ + ": file: got no file, expected an MCAP file");
     std::ifstream file(path_, std::ios::binary | std::ios::ate);
@@ -323,7 +327,7 @@ class Reader {
         report_.is_complete = left == mcap::kMagic.size() && take(left) && bytes == mcap::kMagic;
         break;
       }
-      if (is_summary_) continue;  // says everything a second time
+      if (is_summary_) continue;  // repeats records from before
       if (Result<void> done = handle(opcode, bytes); !done) return fail(done.error());
     }
     return report_;
@@ -378,7 +382,7 @@ class Reader {
     return {};
   }
 
-  /// Schemas, channels and messages; others are passed over. False for content that cannot be.
+  /// Takes a schema, channel or message; ignores other records. False for impossible content.
   bool in_chunk(Opcode opcode, std::string_view content) {
     FieldReader fields(content);
     if (opcode == Opcode::kSchema) {
@@ -387,7 +391,7 @@ class Reader {
       static_cast<void>(fields.text());  // encoding
       const std::string_view schema = fields.text();
       auto& known = schemas_[id];
-      if (name == known.first && schema == known.second) return !fields.is_short();  // repeated
+      if (name == known.first && schema == known.second) return !fields.is_short();  // a repetition
       if (!keep(name.size() + schema.size())) return false;
       known = {std::string(name), std::string(schema)};
     } else if (opcode == Opcode::kChannel) {
@@ -416,7 +420,7 @@ class Reader {
     return !fields.is_short();
   }
 
-  /// Whether so much more may stay in memory: a small file can ask for much, as channels repeat schemas.
+  /// Whether `bytes` more may stay in memory. A small file may need much, because channels repeat schemas.
   bool keep(std::size_t bytes) {
     kept_ += bytes;
     return kept_ <= kMostKept;

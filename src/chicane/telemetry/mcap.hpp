@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// MCAP files: the records of the format, a writer, and a reader that survives damage.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +7,6 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,15 +14,14 @@
 
 #include "chicane/base/result.hpp"
 
-/// Format that writer and reader of MCAP files share (https://mcap.dev/spec, version 1): numbers are little
-/// endian, strings are preceded by their 32-bit length, records by one byte for their kind and their 64-bit
-/// length.
-
+/// Format of MCAP files (https://mcap.dev/spec, version 1): numbers are little endian; a string follows its
+/// 32-bit length; a record follows one byte for its kind and its 64-bit length.
 namespace chicane::telemetry::mcap {
 
-inline constexpr std::string_view kMagic{"\x89MCAP0\r\n", 8};
-inline constexpr std::size_t kRecordHead = 9;  ///< bytes before a record's content
+inline constexpr std::string_view kMagic{"\x89MCAP0\r\n", 8};  ///< first and last bytes of a file
+inline constexpr std::size_t kRecordHead = 9;                  ///< bytes before a record's content
 
+/// Kinds of records.
 enum class Opcode : unsigned char {
   kHeader = 0x01,
   kFooter = 0x02,
@@ -41,13 +40,14 @@ enum class Opcode : unsigned char {
   kDataEnd = 0x0f,
 };
 
-/// CRC-32 of IEEE 802.3, as zlib computes it; `so_far` continues an earlier one.
+/// CRC-32 of IEEE 802.3, as zlib computes it; `so_far`: CRC of the bytes before, 0 without any.
 [[nodiscard]] std::uint32_t crc32(std::string_view bytes, std::uint32_t so_far = 0) noexcept;
 
-/// Appends fields to a buffer.
+/// Appends fields to a buffer, which it refers to.
 class Fields {
  public:
   explicit Fields(std::string& bytes) : bytes_{bytes} {}
+  /// Appends an integer of the type's size.
   template <class T>
   Fields& number(T value) {
     for (std::size_t i = 0; i < sizeof(T); ++i) {
@@ -55,6 +55,7 @@ class Fields {
     }
     return *this;
   }
+  /// Appends a text after its length.
   Fields& text(std::string_view value) {
     number(static_cast<std::uint32_t>(value.size()));
     bytes_.append(value);
@@ -65,7 +66,8 @@ class Fields {
   std::string& bytes_;
 };
 
-/// Takes fields from the front of bytes that may end too early: then is_short() for ever, and zeros.
+/// Takes fields from the front of bytes. If the bytes end too early, is_short() is true from then on, and all
+/// fields are zero or empty.
 class FieldReader {
  public:
   explicit FieldReader(std::string_view bytes) : rest_{bytes} {}
@@ -79,6 +81,7 @@ class FieldReader {
     return static_cast<T>(value);
   }
   [[nodiscard]] std::string_view text() { return take(number<std::uint32_t>()); }
+  /// Next `count` bytes.
   [[nodiscard]] std::string_view take(std::uint64_t count) {
     if (count > rest_.size()) {
       is_short_ = true;
@@ -101,19 +104,19 @@ class FieldReader {
 
 namespace chicane::telemetry {
 
-/// Writes an MCAP file (https://mcap.dev/spec, version 1, profile "ros2"): chunks with CRC, message indexes,
-/// and at the end the summary that readers seek by. Nothing that is in the file is ever touched again: a
-/// process that is killed leaves all chunks up to its last flush(), and read_mcap() reads them.
+/// Writer of an MCAP file (https://mcap.dev/spec, version 1, profile "ros2"): chunks with CRC, message
+/// indexes, and at the end the summary by which readers seek. Written bytes never change: a process that is
+/// killed leaves all chunks up to its last flush(), which read_mcap() can read.
 ///
-/// Memory: one chunk, and about 300 bytes for each chunk written (the index). One thread.
+/// A record that cannot be written, as on a full disk, is removed again, so that the file ends with an intact
+/// record. Its chunk is kept, and the next flush() tries again. If the removal fails as well, every further
+/// call fails with the same error.
 ///
-/// What cannot be written (a full disk) is taken back, so that the file ends behind an intact record, and the
-/// chunk is kept: the next flush() tries again. Where taking back fails, too, every further call fails in the
-/// same words.
+/// Memory: one chunk, and about 300 bytes of index for each written chunk. One thread.
 class McapWriter {
  public:
-  /// Creates a file. kIo if it exists already or cannot be made: a recording is never overwritten.
-  /// `is_compressed`: chunks by Zstandard.
+  /// Creates a file. kIo if it cannot be made or exists already: a recording is never overwritten. `library`:
+  /// name of the writing program. `is_compressed`: compresses chunks by Zstandard.
   [[nodiscard]] static Result<std::unique_ptr<McapWriter>> create(const std::string& path,
                                                                   std::string_view library,
                                                                   bool is_compressed = false);
@@ -122,69 +125,76 @@ class McapWriter {
   McapWriter(const McapWriter&) = delete;
   McapWriter& operator=(const McapWriter&) = delete;
 
-  /// A stream of CDR messages of a ROS 2 type; its number, from 0. `schema` is in the form of "ros2msg".
+  /// Adds a stream of CDR messages of a ROS 2 type, and returns its number, from 0. `schema` is a definition
+  /// in the form "ros2msg".
   std::uint16_t add_channel(std::string_view topic, std::string_view type, std::string_view schema);
-  /// Writes keys and texts about the file's content; at once in the file.
+  /// Writes keys and texts about the content to the file, without a chunk.
   Result<void> add_metadata(std::string_view name, const std::map<std::string, std::string>& entries);
-  /// A file in the file, with a CRC of its own; at once in the file.
+  /// Writes the content of another file to the file, with its own CRC, without a chunk.
   Result<void> add_attachment(std::string_view name, std::string_view media_type, std::string_view bytes);
-  /// `log_time` [ns] should not go back; `publish_time` [ns] may. Ends the chunk when it has 1 MiB; while
-  /// that fails it grows, up to 4 MiB, and then the message is refused.
+  /// Adds a message to the chunk. `log_time` [ns] should not fall; `publish_time` [ns] may. Writes the chunk
+  /// at 1 MiB. While that fails the chunk grows up to 4 MiB; beyond, messages are refused.
   Result<void> write(std::uint16_t channel, std::uint64_t log_time, std::uint64_t publish_time,
                      std::string_view bytes);
-  /// Ends the chunk and writes it to the file: from here on it survives the end of the process.
+  /// Writes the chunk to the file, where it survives the end of the process.
   Result<void> flush();
-  /// The last chunk, the summary and the end. Nothing can be written afterwards.
+  /// Writes the last chunk, the summary and the end. Nothing can be written afterwards.
   Result<void> close();
 
   [[nodiscard]] std::uint64_t bytes_written() const noexcept { return position_; }
 
  private:
+  /// Stream of messages.
   struct Channel {
-    std::string record;  ///< record for the summary
-    std::string schema_record;
-    std::uint64_t messages = 0;
-    std::vector<std::pair<std::uint64_t, std::uint64_t>> index;  ///< index of this chunk: log time, offset
+    std::string record;          ///< its record, repeated in the summary
+    std::string schema_record;   ///< record of its schema, repeated in the summary
+    std::uint64_t messages = 0;  ///< messages so far
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> index;  ///< log time and offset in the current chunk
   };
 
   McapWriter(std::string path, int file, bool is_compressed)
       : path_{std::move(path)}, file_{file}, compression_{is_compressed ? "zstd" : ""} {}
+  /// Writes all bytes to the file, or none of them.
   Result<void> put(std::string_view bytes);
+  /// Records of the chunk and of its message indexes, as they are in the file at position_. Fills `index`,
+  /// the chunk's entry in the summary.
   [[nodiscard]] std::string chunk_records(std::string& index) const;
+  /// Bytes from the summary, at position_, to the end of the file.
   [[nodiscard]] std::string summary() const;
 
   std::string path_;
-  int file_ = -1;
-  std::string_view compression_;
-  Result<void> state_;
-  std::uint64_t position_ = 0;
-  std::vector<Channel> channels_;
-  std::string chunk_;
-  std::uint64_t chunk_start_ = 0, chunk_end_ = 0;  ///< log times of its messages
-  std::uint64_t chunk_messages_ = 0;
-  std::uint64_t start_ = 0, end_ = 0, messages_ = 0;
-  std::string chunk_indexes_, attachment_indexes_, metadata_indexes_;  ///< records of the summary
-  std::uint32_t chunks_ = 0, attachments_ = 0, metadata_ = 0;
+  int file_ = -1;                                                      ///< descriptor; -1: closed
+  std::string_view compression_;                                       ///< "zstd" or empty
+  Result<void> state_;                                                 ///< error of every further call
+  std::uint64_t position_ = 0;                                         ///< size of the file [byte]
+  std::vector<Channel> channels_;                                      ///< channels by number
+  std::string chunk_;                                                  ///< records of the current chunk
+  std::uint64_t chunk_start_ = 0, chunk_end_ = 0;                      ///< log times of its messages [ns]
+  std::uint64_t chunk_messages_ = 0;                                   ///< messages in it
+  std::uint64_t start_ = 0, end_ = 0, messages_ = 0;                   ///< log times and messages of the file
+  std::string chunk_indexes_, attachment_indexes_, metadata_indexes_;  ///< records for the summary
+  std::uint32_t chunks_ = 0, attachments_ = 0, metadata_ = 0;          ///< records in the file
 };
 
+/// Stream of messages in a file.
 struct McapChannel {
   std::uint16_t id = 0;
   std::string topic;
-  std::string message_encoding;
-  std::string type;  ///< name of its schema; empty without one
-  std::string schema;
+  std::string message_encoding;  ///< "cdr" for messages of ROS 2
+  std::string type;              ///< name of its schema; empty without one
+  std::string schema;            ///< definition of the type
 };
 
-/// Views are valid during the call only.
+/// Message in a file. Views are valid during the call only.
 struct McapMessage {
   const McapChannel& channel;
-  std::uint32_t sequence = 0;
-  std::uint64_t log_time = 0;      ///< [ns]
-  std::uint64_t publish_time = 0;  ///< [ns]
-  std::string_view bytes;
+  std::uint32_t sequence = 0;      ///< number in its channel
+  std::uint64_t log_time = 0;      ///< time of recording [ns]
+  std::uint64_t publish_time = 0;  ///< time of sending [ns]
+  std::string_view bytes;          ///< content
 };
 
-/// Called in the order of the file. Any of them may be empty.
+/// Functions that read_mcap() calls in the order of the file; each may be empty.
 struct McapVisitor {
   std::function<void(const McapMessage&)> on_message{};
   std::function<void(std::string_view name, std::string_view bytes)> on_attachment{};
@@ -193,19 +203,18 @@ struct McapVisitor {
 
 /// Extent of a file that was read.
 struct McapReport {
-  std::uint64_t messages = 0;
-  std::uint64_t chunks = 0;   ///< intact ones
-  std::uint64_t damaged = 0;  ///< chunks and attachments that were left out: wrong CRC or content
-  bool is_compressed = false;
-  bool is_complete = false;  ///< closed as it should be; otherwise the writer was killed, or the end is lost
+  std::uint64_t messages = 0;  ///< messages read
+  std::uint64_t chunks = 0;    ///< intact chunks
+  std::uint64_t damaged = 0;   ///< chunks and records left out because of a wrong CRC or content
+  bool is_compressed = false;  ///< a chunk is compressed by Zstandard
+  bool is_complete = false;    ///< the file was closed; false: the writer was killed, or the end is lost
 };
 
-/// Reads every intact record of an MCAP file, whether or not it was closed: from front to back, without its
-/// index. What ends in the middle of a record, and chunks whose CRC is wrong, are left out and counted; a
-/// wrong length between records ends the reading. Memory: one chunk (at most 256 MiB), and at most 64 MiB of
-/// schemas and channels; those beyond count as damaged.
+/// Reads every intact record of an MCAP file from front to back, without its index, closed or not. Leaves out
+/// and counts chunks with a wrong CRC; a wrong length between records ends the reading. Memory: one chunk (at
+/// most 256 MiB), and at most 64 MiB of schemas and channels; those beyond count as damaged.
 ///
-/// kIo when it cannot be read; kParse when it is no MCAP file, or is compressed by other means than
+/// kIo when the file cannot be read; kParse when it is no MCAP file, or is compressed by other means than
 /// Zstandard.
 [[nodiscard]] Result<McapReport> read_mcap(const std::string& path, const McapVisitor& visitor);
 

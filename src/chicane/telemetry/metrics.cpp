@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Metrics of a run, collected step by step: extremes, laps, times, and the settings and faults of each lap.
+// Metrics of a run, collected step by step: extremes, laps and durations; settings and faults of each lap.
 #include "chicane/telemetry/metrics.hpp"
 
 #include <iterator>
@@ -9,6 +9,7 @@
 namespace chicane::telemetry {
 namespace {
 
+/// Duration in nanoseconds; 0 for negative ones and for not-a-number.
 std::uint64_t nanoseconds(double seconds) noexcept {
   return std::isfinite(seconds) && seconds > 0.0 ? static_cast<std::uint64_t>(std::min(seconds, 1e9) * 1e9)
                                                  : 0;
@@ -25,8 +26,8 @@ void add_to(Fnv& hash, const model::State& state) noexcept {
     hash.add(value);
 }
 
-constexpr std::string_view kManual = "manual.is_on";
-constexpr std::string_view kFault = "fault.";
+constexpr std::string_view kManual = "manual.is_on";  // name of the change by which a person takes the wheel
+constexpr std::string_view kFault = "fault.";         // beginning of the names of faults
 
 /// Whether a setting does not affect a lap: the pace, and a person's controls.
 bool is_left_out(std::string_view name) {
@@ -180,7 +181,6 @@ void LapLedger::add(const Change& change) {
   log_.push_back({change.time, std::string(change.name.view()), std::string(change.value.view())});
 }
 
-/// Summarises the oldest `count` changes and drops them.
 void LapLedger::fold(std::size_t count) {
   std::map<std::string, std::string> outcome;
   const auto end = log_.begin() + static_cast<std::ptrdiff_t>(count);
@@ -196,8 +196,8 @@ LapSetup LapLedger::setup(double end, double lap_time) const {
   LapSetup setup;
   std::map<std::string, std::string> settings;
   std::map<std::string, bool> faults;  // faults that acted in the lap, or still act
-  double by_hand_since = end;          // manual driving after this time is ignored
-  double by_hand = 0.0;
+  double by_hand_since = end;          // time since which a person drives; `end`: nobody does
+  double by_hand = 0.0;                // time in the lap that a person drove
   for (const Noted& each : log_) {
     if (each.time > end) break;
     const bool is_on = each.value != "false";
@@ -205,7 +205,7 @@ LapSetup LapLedger::setup(double end, double lap_time) const {
       by_hand += std::max(0.0, std::max(start, each.time) - std::max(start, by_hand_since));
       by_hand_since = is_on ? each.time : end;
     } else if (each.name.starts_with(kFault)) {
-      // One that was over before the lap began did not act in it.
+      // A fault that ended before the lap began did not act in the lap.
       if (is_on || each.time > start)
         faults[each.name.substr(kFault.size())] = true;
       else

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Covariance of the estimated car: prediction by the model's slopes, update by one measured quantity after
+// the other, and sensor noise and model error from the innovations.
 #include "chicane/tracking/error_covariance.hpp"
 
 #include <algorithm>
@@ -8,17 +10,18 @@
 namespace chicane::tracking {
 namespace {
 
+// Constants of eq. 22 to 24; chosen.
 constexpr double kForgetting = 0.03;  // weight of the newest innovation in means
-// Deviation of the acceleration that the model lacks, at least and at most.
+// Range of the standard deviation of the acceleration that the model lacks.
 constexpr double kLeastLateral = 0.25, kMostLateral = 4.0;  // [m/s²]
 constexpr double kLeastYaw = 0.125, kMostYaw = 2.0;         // [rad/s²]
-constexpr double kErrorTime = 0.3;                          // [s] duration of such an error where it is noise
-constexpr double kAdapting = 0.1;  // share of one product of innovations that a deviation follows
-constexpr double kLowSpread = 0.5,
-                 kSpreadGain = 2.0;    // innovations smaller than expected: the model is better
-constexpr double kSurprise = 4.0;      // deviations of an innovation that show a wrong model at once
-constexpr double kMostSurprise = 4.0;  // largest factor of the model's error by one innovation
-// Deviations of a new estimate: the car may have started with any slide.
+constexpr double kErrorTime = 0.3;     // [s] duration of such an acceleration where it counts as noise
+constexpr double kAdapting = 0.1;      // change of the log of that deviation by one product of innovations
+constexpr double kLowSpread = 0.5;     // Channel::spread below which the deviation always falls
+constexpr double kSpreadGain = 2.0;    // limit of its rise for each unit of spread above that
+constexpr double kSurprise = 4.0;      // standard deviations of an innovation that show a wrong model at once
+constexpr double kMostSurprise = 4.0;  // largest factor of the deviation by one innovation
+// Standard deviations of a new estimate: the car may have any lateral velocity at first.
 constexpr ErrorCovariance::Vector kFirst{0.1, 0.02, 2.0, 0.5, 0.0, 0.0};
 
 }  // namespace
@@ -70,8 +73,8 @@ void ErrorCovariance::advance(double dt, double speed, const Slopes& slopes, dou
 }
 
 void ErrorCovariance::take(State state, double innovation, Channel& channel, bool is_after_gap,
-                           Vector& by) noexcept {
-  const double unexpected = innovation - by[state];
+                           Vector& correction) noexcept {
+  const double unexpected = innovation - correction[state];
   const Vector column = p_[state];
   const double expected = column[state];
   if (!(expected > 0.0) || !std::isfinite(expected)) return begin();
@@ -80,7 +83,7 @@ void ErrorCovariance::take(State state, double innovation, Channel& channel, boo
   for (std::size_t i = 0; i < kStates; ++i) gains[i] = column[i] / whole;
   for (std::size_t i = 0; i < kStates; ++i)
     for (std::size_t j = 0; j < kStates; ++j) p_[i][j] -= gains[i] * column[j];
-  for (std::size_t i = 0; i < kStates; ++i) by[i] += gains[i] * unexpected;
+  for (std::size_t i = 0; i < kStates; ++i) correction[i] += gains[i] * unexpected;
   if (state == kAside) place_share_ = gains[kAside];
 
   if (is_after_gap) {
@@ -92,11 +95,12 @@ void ErrorCovariance::take(State state, double innovation, Channel& channel, boo
   channel.learn(unexpected, (1.0 - gains[state]) * unexpected, whole, least, most);
 }
 
-/// Noise and model error from an innovation, what was left of it and its expected variance (eq. 23, 24).
-void ErrorCovariance::Channel::learn(double innovation, double left, double expected, double least,
+/// Updates noise and model error by an innovation, its rest after the correction and its expected variance
+/// (eq. 23, 24). The model error stays in [least, most].
+void ErrorCovariance::Channel::learn(double innovation, double rest, double expected, double least,
                                      double most) noexcept {
   const double square_now = innovation * innovation / expected, product_now = innovation * last / expected;
-  square += kForgetting * (innovation * left - square);
+  square += kForgetting * (innovation * rest - square);
   product += kForgetting * (innovation * last - product);
   spread += kForgetting * (square_now - spread);
   last = innovation;
@@ -107,11 +111,11 @@ void ErrorCovariance::Channel::learn(double innovation, double left, double expe
 }
 
 ErrorCovariance::Vector ErrorCovariance::correct(const Innovation& innovation) noexcept {
-  Vector by{};
-  if (std::isfinite(innovation.aside)) take(kAside, innovation.aside, aside_, innovation.is_after_gap, by);
-  if (std::isfinite(innovation.heading))
-    take(kHeading, innovation.heading, heading_, innovation.is_after_gap, by);
-  return by;
+  const auto [aside, heading, is_after_gap] = innovation;
+  Vector correction{};
+  if (std::isfinite(aside)) take(kAside, aside, aside_, is_after_gap, correction);
+  if (std::isfinite(heading)) take(kHeading, heading, heading_, is_after_gap, correction);
+  return correction;
 }
 
 }  // namespace chicane::tracking

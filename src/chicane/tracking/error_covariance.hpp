@@ -8,70 +8,76 @@
 namespace chicane::tracking {
 
 /// Covariance of the error of an estimated car, and the gains of a Kalman filter that follow from it
-/// (docs/controller.md, eq. 22 to 25). Place beside the car, heading, lateral velocity and yaw rate are
-/// coupled: an error of the heading moves the place by speed times time, and lateral velocity and yaw rate
-/// change by the slopes of the tyres. The noise of the sensors, and how wrong the model is, come from the
-/// innovations. SI units, left positive. Allocates nothing; one thread.
+/// (docs/controller.md, eq. 22 to 25). Lateral position, heading, lateral velocity and yaw rate are coupled:
+/// an error of the heading moves the position by speed times time, and lateral velocity and yaw rate change
+/// by the slopes of the tyres. Sensor noise and model error are estimated from the innovations. SI units,
+/// left positive. Allocates nothing; one thread.
 class ErrorCovariance {
  public:
+  /// Index of an estimated quantity: offset to the left [m], heading [rad], lateral velocity [m/s], yaw rate
+  /// [rad/s], and the disturbance's lateral [m/s²] and yaw acceleration [rad/s²].
   enum State : std::size_t { kAside, kHeading, kSlide, kYawRate, kLateral, kYaw, kStates };
   using Vector = std::array<double, kStates>;
-  static constexpr double kMostShare = 0.8;  ///< largest share of an innovation that is taken over
+  static constexpr double kMostShare = 0.8;  ///< largest gain for a measured quantity itself (eq. 22); chosen
 
-  /// What a step makes of a lateral velocity [m/s] and of a yaw rate [rad/s].
+  /// Derivatives of lateral velocity and yaw rate after a step by those before it.
   struct Slopes {
     double slide_by_slide, slide_by_yaw_rate, yaw_rate_by_slide, yaw_rate_by_yaw_rate;
   };
 
   ErrorCovariance() noexcept { reset(); }
-  /// A run begins: nothing is known of noise and model.
+  /// Starts a run: noise and model error are unknown.
   void reset() noexcept;
-  /// An estimate begins with a measurement; noise and model error stay.
+  /// Starts an estimate at a measurement. Noise and model error stay.
   void begin() noexcept;
-  /// Whether the accelerations that the model lacks are estimated; else they are noise. Off at first.
+  /// Estimates the accelerations that the model lacks; switched off, as at first, they count as noise.
   void estimate_disturbance(bool is_on) noexcept;
-  /// A step of dt [s] at `speed` [m/s]; `fading`: share of the disturbance that the step leaves.
+  /// Advances the covariance by a step of dt [s] at `speed` [m/s]; `fading`: share of the disturbance that
+  /// remains after the step.
   void advance(double dt, double speed, const Slopes& slopes, double fading) noexcept;
 
-  /// A measurement less its expectation: beside the car [m] and of the heading [rad]; NaN where it was not
-  /// measured. `is_after_gap`: the measurement before is too old to say how noisy this one is.
+  /// Measurement less its prediction: to the left of the car [m] and of the heading [rad]; NaN for what was
+  /// not measured. `is_after_gap`: the previous measurement is too old for an estimate of the noise.
   struct Innovation {
     double aside, heading;
     bool is_after_gap;
   };
-  /// Takes in a measurement. Returns the correction of the estimate.
+  /// Updates the covariance by a measurement. Returns the correction of the estimate.
   Vector correct(const Innovation& innovation) noexcept;
 
-  /// Variance of the error of the lateral velocity of a point `behind` the centre of mass [m²/s²].
+  /// Variance of the error of lateral velocity at a point `behind` [m] the centre of mass [m²/s²].
   [[nodiscard]] double slide_variance(double behind) const noexcept {
     const double variance =
         p_[kSlide][kSlide] - 2.0 * behind * p_[kSlide][kYawRate] + behind * behind * p_[kYawRate][kYawRate];
     return variance > 0.0 ? variance : 0.0;
   }
-  /// Share of the last innovation of the place that was taken over; [0, kMostShare].
+  /// Gain of the last lateral innovation for the lateral position; [0, kMostShare].
   [[nodiscard]] double place_share() const noexcept { return place_share_; }
-  /// Estimated deviation of a sensor's noise: of the place beside the car [m], of the heading [rad].
+  /// Estimated standard deviation of the measured position, to the side of the car [m].
   [[nodiscard]] double place_noise() const noexcept { return std::sqrt(aside_.noise()); }
+  /// Estimated standard deviation of the measured heading [rad].
   [[nodiscard]] double heading_noise() const noexcept { return std::sqrt(heading_.noise()); }
 
  private:
-  /// One measured quantity: its noise, and how wrong the model is in it.
+  /// Noise of one measured quantity, and the error of the model in it.
   struct Channel {
-    double square = 0.0;   ///< mean of innovation times what was left of it
-    double product = 0.0;  ///< mean of innovation times the one before
-    double last = 0.0;
-    double spread = 1.0;  ///< mean of innovation² over its expected variance
-    double model = 0.0;   ///< deviation of the acceleration that the model lacks [unit/s²]
+    double square = 0.0;   ///< mean of the innovation times its rest after the correction [unit²]
+    double product = 0.0;  ///< mean of the innovation times the previous one [unit²]
+    double last = 0.0;     ///< previous innovation [unit]
+    double spread = 1.0;   ///< mean of the squared innovation over its expected variance
+    double model = 0.0;    ///< standard deviation of the acceleration that the model lacks [unit/s²]
 
+    /// Variance of the noise [unit²].
     [[nodiscard]] double noise() const noexcept { return square > product ? square - product : 0.0; }
-    void learn(double innovation, double left, double expected, double least, double most) noexcept;
+    void learn(double innovation, double rest, double expected, double least, double most) noexcept;
   };
-  void take(State state, double innovation, Channel& channel, bool is_after_gap, Vector& by) noexcept;
+  /// Updates the covariance by one measured quantity and adds the corrections to `correction`.
+  void take(State state, double innovation, Channel& channel, bool is_after_gap, Vector& correction) noexcept;
 
-  std::array<Vector, kStates> p_{};
+  std::array<Vector, kStates> p_{};  ///< covariance, symmetric
   Channel aside_, heading_;
-  double place_share_ = kMostShare;
-  bool is_disturbed_ = false;
+  double place_share_ = kMostShare;  ///< place_share()
+  bool is_disturbed_ = false;        ///< estimate_disturbance()
 };
 
 }  // namespace chicane::tracking

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Estimates of the car: commands in flight, direction of travel, state by prediction and correction,
+// and grip by least squares over the innovations of three estimators.
 #include "chicane/tracking/state_estimator.hpp"
 
 #include <cmath>
@@ -10,55 +12,56 @@
 namespace chicane::tracking {
 
 void CommandHistory::add(double time, const model::Command& command) noexcept {
-  while (count_ > 0 && entry(count_ - 1).time >= time) --count_;
+  while (count_ > 0 && entries_[count_ - 1].time >= time) --count_;
   if (count_ == kCapacity) {
-    first_ = (first_ + 1) % kCapacity;
+    std::shift_left(entries_.begin(), entries_.end(), 1);
     --count_;
   }
-  entries_[static_cast<std::size_t>((first_ + count_) % kCapacity)] = {time, command};
-  ++count_;
+  entries_[count_++] = {time, command};
 }
 
 model::Command CommandHistory::at(double time) const noexcept {
-  for (int i = count_ - 1; i >= 0; --i) {
-    if (entry(i).time <= time) return entry(i).command;
-  }
+  for (std::size_t i = count_; i-- > 0;)
+    if (entries_[i].time <= time) return entries_[i].command;
   return {};
 }
 
 double CommandHistory::lowest_throttle(double from, double until) const noexcept {
   double lowest = at(from).throttle;
-  for (int i = 0; i < count_; ++i)
-    if (entry(i).time > from && entry(i).time <= until) lowest = std::min(lowest, entry(i).command.throttle);
+  for (std::size_t i = 0; i < count_; ++i)
+    if (entries_[i].time > from && entries_[i].time <= until)
+      lowest = std::min(lowest, entries_[i].command.throttle);
   return lowest;
 }
 
 double CommandHistory::next_change(double time, double limit) const noexcept {
-  for (int i = 0; i < count_; ++i) {
-    if (entry(i).time > time) return std::min(entry(i).time, limit);
-  }
+  for (std::size_t i = 0; i < count_; ++i)
+    if (entries_[i].time > time) return std::min(entries_[i].time, limit);
   return limit;
 }
 
 namespace {
 
-constexpr double kMaxStep = 0.01;       // [s] integration step of the estimator
-constexpr double kLostPosition = 3.0;   // [m] a measurement further from the prediction restarts it
-constexpr double kAtRest = 0.3;         // [m/s] slower than that there is no direction
-constexpr double kMostlyAlong = 0.5;    // of the way, along the heading or against it
-constexpr double kMostDisplaced = 1.5;  // times the way that the speed says
-constexpr double kUncertain = 1.0;      // [m] more for a noisy sensor
-constexpr double kRestingSpeed = 2.0;   // [m/s] below which the drive that stops a car fades
+constexpr double kMaxStep =
+    0.01;  // [s] integration step of the estimator; chosen: the model's error is O(dt²)
+constexpr double kRounding = 1e-9;  // [s] rounding of times
+constexpr double kLostPosition =
+    3.0;  // [m] distance of a measurement from its prediction that restarts; chosen
+constexpr double kLostHeading = 0.5;    // [rad] the same of the heading; chosen
+constexpr double kAtRest = 0.3;         // [m/s] speed below which a car has no direction; chosen
+constexpr double kMostlyAlong = 0.5;    // share of the way that shows a direction; chosen
+constexpr double kMostDisplaced = 1.5;  // displacement over the way by speed that shows a reset; chosen
+constexpr double kUncertain = 1.0;      // [m] added to that for a noisy sensor; chosen
+constexpr double kRestingSpeed = 2.0;   // [m/s] speed below which the drive that stops a car fades; chosen
 
 }  // namespace
 
-/// The covariance over a step of the state, by the model's slopes there.
 void StateEstimator::advance_errors(ErrorCovariance& errors, const model::BodyMotion<double>& from,
                                     const model::BodyMotion<double>& to, double steer, double asked,
                                     double dt, const model::PredictionModel::Lags& lags) const noexcept {
-  // Differences to the side that the car turns to: a mirrored car has mirrored slopes.
-  const double slide = std::copysign(0.01, from.r),
-               yaw_rate = std::copysign(0.001, from.r);  // [m/s], [rad/s]
+  // Finite differences to the side that the car turns to, so that a mirrored car has mirrored slopes.
+  const double slide = std::copysign(0.01, from.r);      // [m/s]
+  const double yaw_rate = std::copysign(0.001, from.r);  // [rad/s]
   model::BodyMotion<double> slid = from, turned = from;
   slid.vy += slide;
   turned.r += yaw_rate;
@@ -72,22 +75,22 @@ void StateEstimator::advance_errors(ErrorCovariance& errors, const model::BodyMo
                  Disturbance::kTime / (Disturbance::kTime + dt));
 }
 
-/// `errors`: advanced with the state, or null.
 void StateEstimator::advance(Prediction& at, double from, double to, const CommandHistory& sent,
                              ErrorCovariance* errors) const noexcept {
   const model::VehicleParams& p = model_.vehicle();
   model::State& state = at.state;
   double now = from;
-  double lags_for = 0.0;  // [s]
+  double lags_dt = 0.0;  // [s] length of the step that `lags` are for
   model::PredictionModel::Lags lags;
-  while (now < to - 1e-9) {
-    const double dt = std::min(sent.next_change(now + 1e-9, to) - now, kMaxStep);
-    const model::Command command = sent.at(now + 1e-9);
-    if (dt != lags_for) {
+  while (now < to - kRounding) {
+    const double dt = std::min(sent.next_change(now + kRounding, to) - now, kMaxStep);
+    const model::Command command = sent.at(now + kRounding);
+    if (dt != lags_dt) {
       lags = model_.lags(dt);
-      lags_for = dt;
+      lags_dt = dt;
     }
-    const double reach = p.steer_rate_limit * dt / (1.0 - lags.steer.end);  // the wheel's, behind its lag
+    // The demand is limited so that the wheel behind its lag keeps to its rate.
+    const double reach = p.steer_rate_limit * dt / (1.0 - lags.steer.end);
     const double steer = std::clamp(command.steer, state.steer - reach, state.steer + reach);
     const double asked = longitudinal_acceleration(p, command.throttle, state.vx);
     const model::BodyMotion<double> before{state.vx, state.vy, state.r, state.steer, at.acceleration};
@@ -126,7 +129,7 @@ void DirectionWatch::see(const model::Measurement& now) noexcept {
   const double way = now.speed * elapsed;
   if (!has_last_ || elapsed > StateEstimator::kLongestGap ||
       hypot(dx, dy) > kMostDisplaced * way + kUncertain) {
-    path_ = along_ = 0.0;  // it begins, or was put elsewhere
+    path_ = along_ = 0.0;  // the first measurement, or the car was put elsewhere
   } else {
     path_ += way;
     along_ += dx * cos(now.psi) + dy * sin(now.psi);
@@ -158,7 +161,7 @@ void StateEstimator::correct(const model::Measurement& now, const CommandHistory
     const double dx = now.x - now_.state.x;
     const double dy = now.y - now_.state.y;
     const double dpsi = angle_difference(now.psi, now_.state.psi);
-    const bool is_near = dx * dx + dy * dy < kLostPosition * kLostPosition && std::fabs(dpsi) < 0.5;
+    const bool is_near = dx * dx + dy * dy < kLostPosition * kLostPosition && std::fabs(dpsi) < kLostHeading;
     if (!now.is_finite() || is_near) {
       surprise_ = {dy * cos(now_.state.psi) - dx * sin(now_.state.psi), dpsi};
       take_over(now, dx, dy, dpsi);
@@ -181,8 +184,7 @@ void StateEstimator::correct(const model::Measurement& now, const CommandHistory
   is_started_ = true;
 }
 
-/// What the innovations of a place beside the car and of a heading add to the estimate; without a place it is
-/// the heading alone.
+/// By the covariance, or by the fixed gains of average_over(). Without a position the heading alone corrects.
 StateEstimator::Correction StateEstimator::correction(double aside, double heading, double elapsed,
                                                       bool is_after_gap) noexcept {
   using Errors = ErrorCovariance;
@@ -200,18 +202,18 @@ StateEstimator::Correction StateEstimator::correction(double aside, double headi
   return {by, place};
 }
 
-/// The innovation of a measurement, docs/controller.md, eq. 21: of what there is of it. Where the speed
-/// is missing, the place says how fast the car is.
+/// Equation 21 of docs/controller.md, for the measured part of a measurement. Without a measured speed the
+/// displacement along the car corrects the speed.
 void StateEstimator::take_over(const model::Measurement& now, double dx, double dy, double dpsi) noexcept {
   using Errors = ErrorCovariance;
   const double before = std::exchange(time_, now.time);
   model::State& state = now_.state;
-  Disturbance& more = now_.disturbance;
+  Disturbance& push = now_.disturbance;
   if (std::isfinite(dpsi)) {
     const bool has_place = std::isfinite(dx) && std::isfinite(dy);
     const auto [sine, cosine] = sine_cosine(state.psi);
-    const double along = dx * cosine + dy * sine, aside = dy * cosine - dx * sine,
-                 elapsed = now.time - before;
+    const double along = dx * cosine + dy * sine, aside = dy * cosine - dx * sine;
+    const double elapsed = now.time - before;
     const bool is_after_gap = before > heading_seen_ || (has_place && before > place_seen_);
     const auto [by, share] = correction(aside, dpsi, elapsed, is_after_gap);
     heading_seen_ = now.time;
@@ -219,14 +221,15 @@ void StateEstimator::take_over(const model::Measurement& now, double dx, double 
       const double unseen = now.time - std::exchange(place_seen_, now.time);
       state.x += share * along * cosine - by[Errors::kAside] * sine;
       state.y += share * along * sine + by[Errors::kAside] * cosine;
-      if (!std::isfinite(now.speed)) state.vx = std::max(0.0, state.vx + 0.25 * share * along / unseen);
+      constexpr double kSpeedGain = 0.25;  // share of the displacement's speed; chosen
+      if (!std::isfinite(now.speed)) state.vx = std::max(0.0, state.vx + kSpeedGain * share * along / unseen);
     }
     state.psi += by[Errors::kHeading];
     state.vy += by[Errors::kSlide];
     state.r += by[Errors::kYawRate];
     if (is_disturbed_) {
-      more.lateral = std::clamp(more.lateral + by[Errors::kLateral], -kMostLateral, kMostLateral);
-      more.yaw = std::clamp(more.yaw + by[Errors::kYaw], -kMostYaw, kMostYaw);
+      push.lateral = std::clamp(push.lateral + by[Errors::kLateral], -kMostLateral, kMostLateral);
+      push.yaw = std::clamp(push.yaw + by[Errors::kYaw], -kMostYaw, kMostYaw);
     }
   }
   if (std::isfinite(now.speed))
@@ -242,9 +245,9 @@ StateEstimator::Prediction StateEstimator::predict(double time, const CommandHis
 double StateEstimator::rolling_speed(double time, const CommandHistory& sent) const noexcept {
   const double to = std::min(time, time_ + kLongestGap);
   double speed = now_.state.vx;
-  for (double now = time_; now < to - 1e-9;) {
-    const double dt = std::min(sent.next_change(now + 1e-9, to) - now, kMaxStep);
-    const double pedal = sent.at(now + 1e-9).throttle;
+  for (double now = time_; now < to - kRounding;) {
+    const double dt = std::min(sent.next_change(now + kRounding, to) - now, kMaxStep);
+    const double pedal = sent.at(now + kRounding).throttle;
     speed = std::max(speed + dt * longitudinal_acceleration(model_.vehicle(), pedal, speed), 0.0);
     now += dt;
   }
@@ -253,9 +256,10 @@ double StateEstimator::rolling_speed(double time, const CommandHistory& sent) co
 
 namespace {
 
-constexpr double kLongestSilence = 0.25;  // [s] between measurements; then the estimators settle first
-constexpr double kPerfectSensor = 1e-8;   // [m²] variance of a perfect sensor
-constexpr double kFarAside = 1.0;         // [m] a measurement that is another thing than noise
+constexpr double kLongestSilence =
+    0.25;  // [s] longer pauses are left out: the estimators settle first; chosen
+constexpr double kPerfectSensor = 1e-8;  // [m²] least variance: of a perfect sensor; chosen
+constexpr double kFarAside = 1.0;        // [m] lateral innovation that is no noise and is left out; chosen
 
 }  // namespace
 
@@ -273,8 +277,8 @@ void GripEstimator::see(const model::Measurement& now, const CommandHistory& sen
   const double elapsed = now.time - assumed_.time();
   assumed_.correct(now, sent);
   less_.correct(now, sent);
-  model::Measurement later = now;  // on a clock that is late all commands are
-  later.time -= kLate;
+  model::Measurement later = now;
+  later.time -= kLate;  // seen from an earlier time all commands act later
   late_.correct(later, sent);
   const double n = assumed_.surprise().aside, less = less_.surprise().aside;
   const bool is_seen =
@@ -299,7 +303,7 @@ void GripEstimator::see(const model::Measurement& now, const CommandHistory& sen
 }
 
 void GripEstimator::end_bend() noexcept {
-  const double each = kMemory / (kMemory + bend_time_), left = each * each;  // squares fade twice as fast
+  const double once = kMemory / (kMemory + bend_time_), left = once * once;  // products of sums fade twice
   bends_ = {.hnhn = left * bends_.hnhn + bend_.hn * bend_.hn,
             .hnhh = left * bends_.hnhh + bend_.hn * bend_.hh,
             .hhhh = left * bends_.hhhh + bend_.hh * bend_.hh,
@@ -337,7 +341,7 @@ double GripEstimator::deviation() const noexcept {
   const double d = all_.hn / all_.hh;
   const double scatter = std::max(bends_.hnhn - 2.0 * d * bends_.hnhh + d * d * bends_.hhhh, 0.0);
   const double n = std::min(static_cast<double>(bends_.count), kMemory / kShortestBend);
-  const double by_bends = n / (n - 1.0) * scatter / (all_.hh * all_.hh);  // the share takes up one of n
+  const double by_bends = n / (n - 1.0) * scatter / (all_.hh * all_.hh);  // n - 1 degrees of freedom
   return std::sqrt(std::max(by_noise, by_bends));
 }
 

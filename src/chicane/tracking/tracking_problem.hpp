@@ -16,21 +16,21 @@
 
 namespace chicane::tracking {
 
-/// The optimal control problem of the default controller (docs/controller.md, eq. 15–20): the
-/// prediction model in coordinates along a reference line, squares of what should be small, one-sided squares
-/// of what must not be exceeded. In the solver's structured form (solver/problem.hpp).
+/// The optimal control problem of the default controller (docs/controller.md, eq. 15–20), in the solver's
+/// structured form (solver/problem.hpp): the prediction model in coordinates along a reference line, a sum of
+/// squares of errors, and one-sided squares of exceeded limits.
 ///
 /// State x = (s, d, e, v_x, v_y, r, δ, a): arc length from the start [m], offset to the left [m], heading
 /// error [rad], body velocity [m/s], yaw rate [rad/s], road-wheel angle [rad], net acceleration [m/s²]. Input
-/// u = (δ, a) as asked.
+/// u = (δ, a): commanded road-wheel angle [rad] and acceleration [m/s²].
 struct TrackingProblem {
-  static constexpr int kNx = 8;
-  static constexpr int kNu = 2;
-  static constexpr int kNr = 11;
-  static constexpr int kNe = 4;
-  static constexpr int kNc = 0;
-  static constexpr int kCapacity = 100;
-  static constexpr bool kRealTime = true;
+  static constexpr int kNx = 8;               ///< states
+  static constexpr int kNu = 2;               ///< inputs
+  static constexpr int kNr = 11;              ///< residuals of a stage
+  static constexpr int kNe = 4;               ///< residuals of the end
+  static constexpr int kNc = 0;               ///< constraints of a stage
+  static constexpr int kCapacity = 100;       ///< longest horizon [stages]
+  static constexpr bool kRealTime = true;     ///< few iterations, no filter method (solver/problem.hpp)
   static constexpr bool kGaussNewton = true;  ///< a step has no time for exact Hessians
 
   enum StateIndex { kS, kD, kE, kVx, kVy, kR, kSteer, kAcceleration };
@@ -39,37 +39,39 @@ struct TrackingProblem {
   using Input = std::array<double, kNu>;
   using Data = solver::StageData<kCapacity + 1>;
 
-  /// What the road asks at the stages 0..horizon, linear in arc length around `s`, and what else acts there.
+  /// Reference, limits and disturbance at the stages 0..horizon. Curvature and speed are linear in arc length
+  /// around `s`.
   struct Road {
-    Data s;                ///< where it was taken [m from the start]
-    Data curvature;        ///< [1/m]
-    Data curvature_slope;  ///< [1/m²]
-    Data speed;            ///< wanted [m/s]
-    Data speed_slope;      ///< [1/s]
-    Data sideslip;         ///< planned: from the body's heading to the line's [rad]
-    Data left;             ///< room for what is `nose` ahead of the centre of mass, left of the line [m]
-    Data right;            ///< and to the right [m]
-    Data tail_left;        ///< for what is `tail` behind [m]
-    Data tail_right;
-    Data acceleration_min;  ///< [m/s²]
-    Data acceleration_max;
-    Data slide_front;  ///< slip of the front tyres beyond their peak, over the peak's, without cost
-    Data slide_rear;   ///< and of the rear tyres
-    Data steadiness;   ///< factor of the root weight on the steering rate, ≥ 1
-    Data pushed_vy;    ///< what a disturbance adds to v_y over the stage [m/s]
-    Data pushed_r;     ///< and to the yaw rate [rad/s]
+    Data s;                 ///< arc length at which the road was sampled [m from the start]
+    Data curvature;         ///< curvature of the line, left positive [1/m]
+    Data curvature_slope;   ///< change of the curvature along the line [1/m²]
+    Data speed;             ///< wanted speed [m/s]
+    Data speed_slope;       ///< change of the wanted speed along the line [1/s]
+    Data sideslip;          ///< planned angle from the body's heading to the line's [rad]
+    Data left;              ///< room of the nose to the left of the line [m]
+    Data right;             ///< room of the nose to the right of the line [m]
+    Data tail_left;         ///< room of the tail to the left of the line [m]
+    Data tail_right;        ///< room of the tail to the right of the line [m]
+    Data acceleration_min;  ///< least commanded acceleration [m/s²]
+    Data acceleration_max;  ///< largest commanded acceleration [m/s²]
+    Data slide_front;       ///< slip of the front tyres beyond the peak without cost, over the peak's slip
+    Data slide_rear;        ///< slip of the rear tyres beyond the peak without cost, over the peak's slip
+    Data steadiness;        ///< factor of the root weight on the steering rate, ≥ 1
+    Data pushed_vy;         ///< change of v_y over the stage by a disturbance [m/s]
+    Data pushed_r;          ///< change of the yaw rate over the stage by a disturbance [rad/s]
   };
 
-  /// Square roots of the weights.
+  /// Square roots of the weights of the residuals.
   struct RootWeights {
     double lateral, heading, speed, steer_rate, jerk, edge, slip, excess_steer_rate, friction;
   };
 
-  /// A kind of stage by its length.
+  /// Length of a stage, and values derived from it.
   struct Step {
-    double length = 0.05;  ///< [s]
-    model::PredictionModel::Lags lags;
-    /// Share of the difference between the angle asked for and the wheel that counts as the wheel's motion.
+    double length = 0.05;               ///< duration [s]
+    model::PredictionModel::Lags lags;  ///< lags of steering and drive over the stage
+    /// Share of the difference between commanded and present wheel angle that the wheel turns in the stage: 1
+    /// for fast steering, whose demand is what the weights limit (model::kSlowSteering).
     double steer_share = 1.0;
 
     [[nodiscard]] static Step of(const model::PredictionModel& model, double length) noexcept {
@@ -77,20 +79,20 @@ struct TrackingProblem {
       const bool is_slow = model.vehicle().steer_lag > model::kSlowSteering;
       return {length, lags, is_slow ? 1.0 - lags.steer.end : 1.0};
     }
-    /// Mean rate of the wheel over the stage for a difference of one [1/s].
+    /// Mean rate of the wheel over the stage for a unit difference between command and wheel [1/s].
     [[nodiscard]] double steer_speed() const noexcept { return steer_share / length; }
   };
 
   const model::PredictionModel* model = nullptr;
-  int horizon = 0;
-  Step first;   ///< of stage 0: its command is held until the next one comes
-  Step others;  ///< of all other stages
+  int horizon = 0;  ///< stages, at most kCapacity
+  Step first;       ///< step of stage 0: its command is held until the next one arrives
+  Step others;      ///< step of all other stages
   RootWeights weight{};
-  double nose = 0.0;  ///< what has to stay inside the edges reaches so far ahead of the centre of mass [m]
-  double tail = 0.0;  ///< and behind it
+  double nose = 0.0;  ///< distance from the centre of mass forward to the point kept inside the edges [m]
+  double tail = 0.0;  ///< distance from the centre of mass back to the point kept inside the edges [m]
   Road road;
-  /// What the model moves in a long first stage beyond one step of its length, at the first guess. Zero for
-  /// a short one.
+  /// Motion of the model over a long first stage in several steps less that in one step, at the first guess
+  /// of the input (correct_first()). Zero for a short stage.
   State first_correction{};
 
   /// Time from the start to stage k [s].
@@ -99,7 +101,8 @@ struct TrackingProblem {
   }
   [[nodiscard]] const Step& step(int k) const noexcept { return k == 0 ? first : others; }
 
-  /// `now` acts on all stages from the start on, fading. Pre: horizon and lengths of stages are set.
+  /// Sets the effect of a disturbance that fades from the start on. Pre: horizon and lengths of stages are
+  /// set.
   void push(Disturbance now) noexcept {
     for (int k = 0; k < horizon; ++k) {
       const double length = step(k).length;
@@ -109,6 +112,7 @@ struct TrackingProblem {
     }
   }
 
+  /// State at stage k + 1 for state x and input u at stage k.
   template <class K, class X, class U>
   [[nodiscard]] auto dynamics(K k, const X& x, const U& u) const noexcept {
     const auto is_first = solver::stage_number(k) < 0.5;
@@ -120,6 +124,7 @@ struct TrackingProblem {
                            r + (select(is_first, more[kR], 0.0) + road.pushed_r.at(k)), steer, a);
   }
 
+  /// Weighted residuals of stage k (eq. 16–19), whose squares are its cost.
   template <class K, class X, class U>
   [[nodiscard]] auto residual(K k, const X& x, const U& u) const noexcept {
     const auto& [s, d, e, vx, vy, r, steer, a] = x;
@@ -130,7 +135,7 @@ struct TrackingProblem {
     using T = Common<decltype(vx), decltype(vy), decltype(r), decltype(steer), decltype(a)>;
     const auto use = model->tire_use(model::BodyMotion<T>{T(vx), T(vy), T(r), T(steer), T(a)});
     const model::VehicleParams& car = model->vehicle();
-    // Offsets of the middles of the axles: the line bends away from the car.
+    // Offsets of nose and tail from the line, which bends away from the car by curvature · distance² / 2.
     const auto bend = 0.5 * road.curvature.at(k);
     const auto ahead = d + nose * (e - nose * bend);
     const auto behind = d - tail * (e + tail * bend);
@@ -149,24 +154,28 @@ struct TrackingProblem {
             (positive_part(use.along_front - kUsefulForce) + positive_part(use.along_rear - kUsefulForce)));
   }
 
+  /// Weighted residuals of the state at the horizon, which stand for the way beyond it (eq. 20).
   template <class X>
   [[nodiscard]] auto terminal_residual(const X& x) const noexcept {
     const auto& [s, d, e, vx, vy, r, steer, a] = x;
-    constexpr double kEndFactor =
-        3.0;  // the end stands for what follows: the square root of about ten stages
+    constexpr double kEndFactor = 3.0;      // root of about ten stages; chosen
+    constexpr double kYawRateFactor = 0.3;  // [s] weight of the yaw rate over that of the heading; chosen
     const double wanted = road.speed.at(horizon);
     return std::make_tuple(
         kEndFactor * weight.lateral * d, kEndFactor * weight.heading * (e + road.sideslip.at(horizon)),
         kEndFactor * weight.speed * (vx - (wanted + road.speed_slope.at(horizon) * (s - road.s.at(horizon)))),
-        kEndFactor * weight.heading * 0.3 * (r - road.curvature.at(horizon) * vx));
+        kEndFactor * weight.heading * kYawRateFactor * (r - road.curvature.at(horizon) * vx));
   }
 
+  /// Lower bounds of the input at stage k.
   [[nodiscard]] Input input_lower(int k) const noexcept {
     return {-model->vehicle().steer_limit, road.acceleration_min.at(k)};
   }
+  /// Upper bounds of the input at stage k.
   [[nodiscard]] Input input_upper(int k) const noexcept {
     return {model->vehicle().steer_limit, road.acceleration_max.at(k)};
   }
+  /// Input nearest to u within the bounds of stage k.
   [[nodiscard]] Input within_bounds(int k, const Input& u) const noexcept {
     const Input low = input_lower(k);
     const Input high = input_upper(k);
@@ -181,6 +190,7 @@ struct TrackingProblem {
     return std::apply([](const auto&... values) { return State{values...}; }, row);
   }
 
+  /// Motion over stage k in one step, with the length and lags of its kind, which may differ between lanes.
   template <class K, class X, class U>
   [[nodiscard]] CHICANE_INLINE inline auto move(K k, const X& x, const U& u) const noexcept {
     const auto is_first = solver::stage_number(k) < 0.5;
@@ -204,7 +214,7 @@ struct TrackingProblem {
                                                    const U& u) const noexcept {
     const auto& [s, d, e, vx, vy, r, steer, a] = x;
     const auto& [steer_command, a_command] = u;
-    const auto late_steer = steer - steer_command;
+    const auto late_steer = steer - steer_command;  // what the wheel lacks at first
     const auto late_a = a - a_command;
     using T = Common<decltype(vx), decltype(vy), decltype(r), decltype(steer), decltype(a),
                      decltype(steer_command), decltype(a_command)>;
@@ -226,11 +236,12 @@ struct TrackingProblem {
                            a_command + late_a * lags.drive.end);
   }
 
-  static constexpr double kUsefulForce =
-      0.93;  ///< of the longitudinal force: the rest keeps the car on its course
+  /// Share of the longitudinal force that costs nothing: the rest keeps the car on its course; chosen.
+  static constexpr double kUsefulForce = 0.93;
 
  public:
-  /// A long first stage from x moves as several steps would, at least for the first guess u of its input.
+  /// Sets first_correction for a first stage from x that is longer than others, at the first guess u of its
+  /// input.
   void correct_first(const State& x, const Input& u) noexcept {
     const int parts = static_cast<int>(first.length / others.length + 0.75);
     if (parts < 2) return;
@@ -238,7 +249,7 @@ struct TrackingProblem {
     const State rough = move_in_parts(0, x, u, 1);
     for (std::size_t i = 0; i < exact.size(); ++i) first_correction[i] = exact[i] - rough[i];
   }
-  /// The motion over stage k in `parts` steps, without first_correction and what a disturbance adds.
+  /// State after stage k in `parts` equal steps, without first_correction and disturbance.
   [[nodiscard]] State move_in_parts(int k, const State& x, const Input& u, int parts) const noexcept {
     const double h = step(k).length / parts;
     const model::PredictionModel::Lags lags = model->lags(h);

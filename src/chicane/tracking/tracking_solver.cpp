@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Compiled once for each instruction set (base/instruction_set.hpp).
+// Solver of the tracking problem. This file is compiled once for each instruction set
+// (base/instruction_set.hpp).
 #include "chicane/tracking/tracking_solver.hpp"
 
 #include "chicane/solver/ocp_solver.hpp"
@@ -7,6 +8,7 @@
 namespace chicane::tracking {
 namespace {
 
+/// OcpSolver behind the interface that all instruction sets share.
 template <class Arch>
 class ArchSolver final : public TrackingSolver {
  public:

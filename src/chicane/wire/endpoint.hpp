@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Parts that all servers of this module share: endpoint of one protocol, router between the protocols of one
+// port, pages, rate-limited log, median.
 #pragma once
 
 #include <algorithm>
@@ -19,17 +21,18 @@
 
 namespace chicane::wire {
 
-/// Lines for the terminal, at a bounded rate whatever a peer sends. One thread.
+/// Log for the terminal with a bounded rate of lines, whatever a peer sends. One thread.
 class SparseLog {
  public:
   explicit SparseLog(std::function<void(std::string_view)> sink) : sink_{std::move(sink)} {}
 
+  /// Logs a line at once: for lines that no peer can cause at will.
   void say(std::string_view line) const {
     if (sink_) sink_(line);
   }
 
-  /// Logs a line at most once a second; the next one counts the suppressed ones. A line unlike the last few
-  /// comes at once: kNewLines of them, and then one a second.
+  /// Logs a line at most once a second, with the number of equal lines suppressed before. A line unlike the
+  /// last kRemembered is logged at once: kNewLines of them, then one a second.
   void complain(std::string_view line) {
     const Clock::time_point now = Clock::now();
     const auto known =
@@ -44,7 +47,7 @@ class SparseLog {
     say(more == 0 ? std::string(line) : std::string(line) + " (" + std::to_string(more) + " like it before)");
   }
 
-  /// `line`, unless one of the same reason was said before. After kReasons of them: nothing more.
+  /// Logs `line` unless a line of the same `reason` was logged before. Logs nothing after kReasons reasons.
   void say_once(std::string_view reason, std::string_view line) {
     if (reasons_.size() == kReasons || std::find(reasons_.begin(), reasons_.end(), reason) != reasons_.end())
       return;
@@ -52,19 +55,22 @@ class SparseLog {
     say(line);
   }
 
-  static constexpr std::size_t kRemembered = 8;
-  static constexpr int kNewLines = 4;
-  static constexpr std::size_t kReasons = 32;
+  // Chosen.
+  static constexpr std::size_t kRemembered = 8;  ///< newest different lines that are remembered
+  static constexpr int kNewLines = 4;            ///< different lines that may come in one burst
+  static constexpr std::size_t kReasons = 32;    ///< reasons of say_once()
 
  private:
   using Clock = std::chrono::steady_clock;
-  static constexpr std::chrono::seconds kPause{1};
+  static constexpr std::chrono::seconds kPause{1};  ///< least time between equal lines
+  /// Line that was logged.
   struct Said {
     std::string line;
-    Clock::time_point at{};
-    int held_back = 0;
+    Clock::time_point at{};  ///< time of its last output
+    int held_back = 0;       ///< equal lines suppressed since
   };
 
+  /// Logs a line unlike the remembered ones, if the burst is not used up.
   void say_new(std::string_view line, Clock::time_point now) {
     const double pause = std::chrono::duration<double>(now - refilled_) / kPause;
     budget_ = std::min(double{kNewLines}, budget_ + pause);
@@ -76,25 +82,28 @@ class SparseLog {
     say(line);
   }
 
-  std::function<void(std::string_view)> sink_;
-  std::deque<Said> said_;
-  std::vector<std::string> reasons_;
-  Clock::time_point refilled_{};
-  double budget_ = kNewLines;
+  std::function<void(std::string_view)> sink_;  ///< gets the lines; may be empty
+  std::deque<Said> said_;                       ///< newest different lines, the oldest first
+  std::vector<std::string> reasons_;            ///< reasons of say_once() so far
+  Clock::time_point refilled_{};                ///< time of the last change of budget_
+  double budget_ = kNewLines;                   ///< different lines that may come now
 };
 
-/// Answers to GET in addition to the dashboard's files, by path ("/mode.json"). Called on the network thread.
+/// Pages by path ("/mode.json"), answered to GET besides the files of the dashboard. Called on the network
+/// thread.
 using Pages = std::map<std::string, std::function<net::Content()>, std::less<>>;
 
-/// Median of the last nine values. No allocation.
+/// Median of the newest kCount values. No allocation.
 class RecentMedian {
+  static constexpr std::size_t kCount = 9;  ///< chosen: four outliers do not change the median much
+
  public:
   void reset() noexcept { count_ = 0; }
   void add(double value) noexcept { values_[count_++ % values_.size()] = value; }
-  /// `otherwise`: while there is none.
+  /// Median, or `otherwise` without a value.
   [[nodiscard]] double value(double otherwise) const noexcept {
     if (count_ == 0) return otherwise;
-    std::array<double, 9> sorted = values_;
+    std::array<double, kCount> sorted = values_;
     const auto end = sorted.begin() + static_cast<std::ptrdiff_t>(std::min(count_, sorted.size()));
     const auto middle = sorted.begin() + (end - sorted.begin()) / 2;
     std::nth_element(sorted.begin(), middle, end);
@@ -102,11 +111,11 @@ class RecentMedian {
   }
 
  private:
-  std::array<double, 9> values_{};
-  std::size_t count_ = 0;
+  std::array<double, kCount> values_{};  ///< ring of the newest values
+  std::size_t count_ = 0;                ///< values added since reset()
 };
 
-/// Whether the query of a request's target ("/path?a=1&b=2") has this item.
+/// Whether the query of a request's target, as in "/path?a=1&b=2", contains `item`.
 [[nodiscard]] inline bool asks_for(std::string_view item, std::string_view target) {
   for (std::size_t begin = target.find('?'); begin != std::string_view::npos;) {
     const std::size_t end = target.find('&', ++begin);
@@ -116,37 +125,37 @@ class RecentMedian {
   return false;
 }
 
-/// One dialect spoken on the shared port: the simulator's (serve.hpp) or the viewers' (viewer.hpp). It sees
-/// only its own connections. All member functions are called on the network thread, one at a time, and must
-/// not block.
+/// One protocol spoken on the shared port: the simulator's (serve.hpp) or the viewers' (viewer.hpp). An
+/// endpoint sees its own connections only. Its functions are called on the network thread, and must not
+/// block.
 class Endpoint {
  public:
   virtual ~Endpoint() = default;
   /// Called before the first connection. `server` outlives every later call; its member functions may be used
   /// from any thread.
   virtual void on_start(net::Server& server) = 0;
-  /// Accept or refuse in words. `UpgradeAnswer::endpoint` is the router's; leave it.
+  /// Accepts a connection, or refuses it with a reason. The router sets UpgradeAnswer::endpoint.
   [[nodiscard]] virtual net::UpgradeAnswer on_upgrade(const net::UpgradeRequest& request) = 0;
   virtual void on_open(net::ConnectionId id) = 0;
   virtual void on_message(net::ConnectionId id, std::string_view bytes, bool binary) = 0;
-  /// Exactly once for each on_open, unless the server is destroyed first.
+  /// Called once for each on_open(), unless the server is destroyed before.
   virtual void on_close(net::ConnectionId id, std::string_view why) = 0;
 };
 
-/// The names under which viewers speak the Foxglove WebSocket protocol, the one they should prefer first.
+/// Names of the Foxglove WebSocket protocol, the preferred one first.
 inline constexpr std::array<std::string_view, 2> kViewerSubprotocols{"foxglove.sdk.v1",
                                                                      "foxglove.websocket.v1"};
 
-/// Sends each connection of one server to the endpoint that speaks its dialect: a viewer's sub-protocol to
-/// `viewer`, everything else (the original simulator offers none and asks for any path) to `simulator`.
-/// Either may be null: its clients are refused in words.
+/// Sends each connection of one server to the endpoint of its protocol: connections that offer a sub-protocol
+/// of viewers to `viewer`, all others to `simulator`, because the original simulator offers none and uses any
+/// path. Either may be null: its clients are refused with a reason.
 class Router {
  public:
   /// `say` gets the reason of a refusal, once for each reason, on the network thread. May be empty.
   Router(Endpoint* simulator, Endpoint* viewer, std::function<void(std::string_view)> say = {})
       : endpoints_{simulator, viewer}, log_{std::move(say)} {}
 
-  /// The router must outlive the server that was created with them. `pages` are answered to GET.
+  /// Handlers for a server, which the router must outlive. `pages` are answered to GET.
   [[nodiscard]] net::ServerHandlers handlers(Pages pages = {}) {
     return {
         .on_start =
@@ -201,9 +210,9 @@ class Router {
     return answer;
   }
 
-  static constexpr std::string_view kSocketIoPath = "/socket.io/";
+  static constexpr std::string_view kSocketIoPath = "/socket.io/";  ///< path of Socket.IO clients
 
-  std::array<Endpoint*, 2> endpoints_;
+  std::array<Endpoint*, 2> endpoints_;  ///< simulator, viewer
   SparseLog log_;
 };
 

@@ -5,9 +5,9 @@
 namespace chicane::wire {
 namespace {
 
-constexpr double kRounding = 1e-6;  // rounding of times that are sums of periods [s]
+constexpr double kRounding = 1e-6;  // [s] rounding of times that are sums of periods
 
-/// Messages with a lower number. By bisection: numbers rise.
+/// Count of the messages with a lower number, by bisection.
 template <class Messages>
 std::size_t count_before(const Messages& messages, std::uint64_t number) {
   const auto found =
@@ -16,6 +16,7 @@ std::size_t count_before(const Messages& messages, std::uint64_t number) {
   return static_cast<std::size_t>(found - messages.begin());
 }
 
+/// Oldest message with this number or a higher one; null: none.
 template <class Messages>
 const KeptMessage* first_from(const Messages& messages, std::uint64_t number) {
   const std::size_t older = count_before(messages, number);
@@ -52,7 +53,6 @@ void RunMemory::add_lap(const telemetry::CompletedLap& lap, double time, std::st
   laps_.push_back(std::move(kept));
 }
 
-/// The oldest, but for the best: clean before fast.
 void RunMemory::drop_lap() {
   const auto best = std::min_element(laps_.begin(), laps_.end(), [](const KeptLap& a, const KeptLap& b) {
     return a.is_clean != b.is_clean ? a.is_clean : a.lap_time < b.lap_time;

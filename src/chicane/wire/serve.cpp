@@ -3,7 +3,6 @@
 // its telemetry.
 #include "chicane/wire/serve.hpp"
 
-#include <algorithm>
 #include <condition_variable>
 #include <deque>
 #include <mutex>
@@ -21,27 +20,28 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr int kMaxUnanswered = 16;           // a client in lock-step has one
-constexpr std::size_t kMaxAccepted = 16;     // upgrades that have not completed
-constexpr double kTypicalTurnAround = 0.02;  // turn-around of the original simulator [s]
-constexpr milliseconds kWatchPeriod{250};
+constexpr int kMaxUnanswered = 16;  // telemetry without an answer; chosen: a client in lock-step has one
+constexpr std::size_t kMaxAccepted = 16;     // upgrades in progress; chosen
+constexpr double kTypicalTurnAround = 0.02;  // [s] time of the original simulator from answer to telemetry
+constexpr milliseconds kWatchPeriod{250};    // period of looking for silence; chosen
 constexpr std::chrono::seconds kPingInterval{25};  // Engine.IO's default
 constexpr const char* kOpenPacket =
     R"(0{"sid":"chicane","upgrades":[],"pingInterval":25000,"pingTimeout":60000,"maxPayload":65536})";
 
 double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 
-/// One thing to be answered, in the order of arrival.
+/// Message of a simulator that needs an answer.
 struct Request {
   enum class Kind : signed char { kTelemetry, kManual, kUnusable };
   Kind kind = Kind::kTelemetry;
   net::ConnectionId from = 0;
-  Clock::time_point received{};
-  model::Measurement measurement{};
-  bool wants_stop_plan = false;
+  Clock::time_point received{};      ///< time of its arrival
+  model::Measurement measurement{};  ///< of kTelemetry
+  bool wants_stop_plan = false;      ///< Session::knows_stop_plan
 };
 
-/// Options for telemetry without a time: the simulator's clock shows in the distance that the car moves.
+/// Options for the clock of the run: measured by telemetry's time field, or without one estimated from the
+/// distance that the car moves.
 run::ExternalDriveOptions by_simulator_clock(const ServeOptions& options) {
   run::ExternalDriveOptions counted = options;
   counted.clock.is_measured = !options.time_field.empty();
@@ -51,7 +51,7 @@ run::ExternalDriveOptions by_simulator_clock(const ServeOptions& options) {
 
 }  // namespace
 
-/// The control thread and everything it owns.
+/// Control thread, and everything that it owns.
 class UdacityEndpoint::Control {
  public:
   using Answer = std::function<void(const Request&, std::string text, std::chrono::nanoseconds after)>;
@@ -116,7 +116,7 @@ class UdacityEndpoint::Control {
     }
   }
 
-  /// Begins with another simulator, or the same one again: learned values are dropped.
+  /// Begins with another simulator, or the same one again: drops learned values.
   void begin(net::ConnectionId from) {
     driven_ = from;
     drive_.begin();
@@ -158,21 +158,22 @@ class UdacityEndpoint::Control {
   Answer answer_;
   const run::ExternalDriveHooks drive_hooks_;
   run::ExternalDrive drive_;
-  const double expected_delay_;  ///< [s]
-  RecentMedian delay_;           ///< [s]
-  telemetry::RunSummary run_;
-  net::ConnectionId driven_ = 0;
-  bool is_by_hand_ = false;  ///< a person drives
+  const double expected_delay_;   ///< delay before one was measured [s]
+  RecentMedian delay_;            ///< measured delays [s]
+  telemetry::RunSummary run_;     ///< summary after stop()
+  net::ConnectionId driven_ = 0;  ///< simulator of the last request; 0: none
+  bool is_by_hand_ = false;       ///< a person drives
+  // Read by any thread: counts of ServeSummary.
   std::atomic<std::uint64_t> answers_{0};
   std::atomic<std::uint64_t> manual_{0};
   std::atomic<std::uint64_t> interventions_{0};
-  std::atomic<double> measured_delay_{0.0};
+  std::atomic<double> measured_delay_{0.0};  ///< newest median [s]
 
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::deque<Request> waiting_;
-  bool is_stopping_ = false;
-  std::thread thread_;  // last: it starts when everything else is there
+  std::mutex mutex_;                 ///< guards the following members
+  std::condition_variable changed_;  ///< notified when one of them changes
+  std::deque<Request> waiting_;      ///< requests in the order of arrival
+  bool is_stopping_ = false;         ///< the thread has to end
+  std::thread thread_;               ///< last member: it starts when all others are constructed
 };
 
 UdacityEndpoint::UdacityEndpoint(const ServeOptions& options,
@@ -279,7 +280,6 @@ void UdacityEndpoint::hear_telemetry(std::string_view bytes) {
   control_->push(request);
 }
 
-/// Reports a faulty message; true if its sender waits for an answer.
 bool UdacityEndpoint::complain_about(const protocol::UdacityTelemetry& message) {
   if (const auto* foreign = std::get_if<protocol::UdacityForeign>(&message)) {
     log_.complain(fmt::format("this is {}{}", foreign->what, foreign->is_telemetry ? "; braking" : ""));
@@ -294,7 +294,7 @@ bool UdacityEndpoint::complain_about(const protocol::UdacityTelemetry& message) 
 void UdacityEndpoint::hear_packet(protocol::UdacityPacket packet) {
   using enum protocol::UdacityPacket;
   session_.has_left |= packet == kDisconnect || packet == kClose;
-  if (!session_.is_stock) return;  // the original pings once and would, if answered, ping on
+  if (!session_.is_stock) return;  // the original pings once, but would go on if it got an answer
   switch (packet) {
     case kPing:
       return send(session_.id, "3");

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Server for the original simulator: answers its telemetry with commands of our controller.
 #pragma once
 
 #include <atomic>
@@ -29,21 +30,22 @@ struct ServeOptions : run::ExternalDriveOptions {
 
   net::ServerOptions server;
   std::string time_field{};  ///< telemetry field with the simulator's time [s]; empty: none
-  /// Artificial delay between the end of a control step and its answer, [0, 0.5 s]. The original controller
-  /// sleeps as long.
+  /// Artificial delay between the end of a control step and its answer, [0, 0.5 s]. The default is that of
+  /// the original controller, which sleeps.
   std::chrono::nanoseconds latency = std::chrono::milliseconds{100};
-  /// Silence of a client before it gets the Engine.IO open packet. Stock clients wait for the packet; the
-  /// original speaks first, and would double its loop if it got one.
+  /// Silence of a client after which it gets the Engine.IO open packet. Stock clients wait for that packet.
+  /// The original simulator speaks first, and would run two loops if it got the packet. This default and the
+  /// next two are chosen.
   std::chrono::nanoseconds open_after = std::chrono::seconds{1};
-  std::chrono::nanoseconds quiet_after = std::chrono::seconds{1};   ///< silence until another may drive
-  std::chrono::nanoseconds silent_after = std::chrono::seconds{3};  ///< silence until it is reported
+  std::chrono::nanoseconds quiet_after = std::chrono::seconds{1};   ///< silence after which another may drive
+  std::chrono::nanoseconds silent_after = std::chrono::seconds{3};  ///< silence that is reported
 };
 
 /// Callbacks of the server; the inherited ones are called on the control thread.
 struct ServeHooks : run::ExternalDriveHooks {
-  std::function<void(std::string_view)> log{};  ///< one line about the connection, on the network thread
+  std::function<void(std::string_view)> log{};  ///< gets lines about the connection, on the network thread
   std::function<void(std::uint16_t port)> on_listening{};  ///< called once, when the port is bound
-  std::function<void()> on_end{};  ///< called once: control has ended, the server still runs
+  std::function<void()> on_end{};  ///< called once, after control has ended and before the server ends
   Pages pages{};                   ///< answers to GET in addition to the assets
   /// Settings by name, as viewers see them. Used on the network thread; outlives the endpoint; null: none.
   protocol::foxglove::ParameterStore* parameters = nullptr;
@@ -62,13 +64,13 @@ struct ServeSummary {
   telemetry::RunSummary run{};      ///< summary over all connections; empty until control has ended
 };
 
-/// Server in place of the original controller program: answers every telemetry of one simulator with exactly
-/// one complete, finite command, and says nothing unasked (docs/protocol.md). Its control thread owns the
-/// controller; the network thread only reads, queues and sends.
+/// Server in place of the original controller program: answers each telemetry of one simulator with exactly
+/// one complete, finite command, and sends nothing else (docs/protocol.md). The control thread owns the
+/// controller; the network thread reads, queues and sends.
 ///
-/// Broken telemetry and telemetry of other scenes is answered too: it counts as a cycle in which nothing was
-/// measured (safety/guard.hpp). The controller is reset for each new connection, and after a silence; the
-/// account of the run continues over all connections.
+/// Broken telemetry and telemetry of other scenes counts as a cycle without a measurement, and is answered as
+/// well. The controller is reset for each new connection, and after a silence. The account of the run
+/// continues over all connections.
 class UdacityEndpoint final : public Endpoint {
  public:
   /// `controller` is used on the control thread only.
@@ -95,38 +97,45 @@ class UdacityEndpoint final : public Endpoint {
 
   /// The simulator that is driven. Network thread only.
   struct Session {
-    net::ConnectionId id = 0;      ///< 0 = none
-    std::string name{};            ///< address, for the log
-    bool is_stock = false;         ///< got our open packet: an Engine.IO client that expects pings
-    bool is_version_3 = false;     ///< EIO=3: the server connects the namespace, the client pings
-    bool knows_stop_plan = false;  ///< announced in its request: gets a stop plan with each command
-    bool has_spoken = false;
-    bool has_left = false;       ///< has said goodbye; the connection still stands
-    bool has_telemetry = false;  ///< has sent telemetry
-    bool is_reported_silent = false;
-    int unanswered = 0;             ///< telemetry messages without an answer yet
-    Clock::time_point last_word{};  ///< time of the last message in either direction
+    net::ConnectionId id = 0;         ///< 0 = none
+    std::string name{};               ///< address, for the log
+    bool is_stock = false;            ///< Engine.IO client that got our open packet and expects pings
+    bool is_version_3 = false;        ///< EIO=3: the server connects the namespace, the client pings
+    bool knows_stop_plan = false;     ///< asked in its request for a stop plan with each command
+    bool has_spoken = false;          ///< has sent a message
+    bool has_left = false;            ///< has sent a disconnect packet; the connection still stands
+    bool has_telemetry = false;       ///< has sent telemetry
+    bool is_reported_silent = false;  ///< its silence was reported
+    int unanswered = 0;               ///< telemetry messages without an answer yet
+    Clock::time_point last_word{};    ///< time of the last message in either direction
   };
 
+  /// Takes a message of the simulator, and queues it for the control thread if it needs an answer.
   void hear_telemetry(std::string_view bytes);
+  /// Takes a packet of Engine.IO or Socket.IO that is no event.
   void hear_packet(protocol::UdacityPacket packet);
+  /// Reports a faulty message; true if its sender waits for an answer.
   [[nodiscard]] bool complain_about(const protocol::UdacityTelemetry& message);
   void send(net::ConnectionId id, std::string text);
+  /// Greets an Engine.IO client that waits for the server to speak first.
   void send_open_packet(net::ConnectionId id);
+  /// Pings an Engine.IO client periodically.
   void ping(net::ConnectionId id);
+  /// Reports a silent simulator; repeats itself.
   void watch();
+  /// Whether another simulator may drive now.
   [[nodiscard]] bool is_quiet() const;
 
   ServeOptions options_;
   ServeHooks hooks_;
   SparseLog log_;
   net::Server* server_ = nullptr;
-  Session session_;
-  std::map<net::ConnectionId, Session> accepted_;  ///< sessions between on_upgrade and on_open
+  Session session_;                                ///< simulator that drives
+  std::map<net::ConnectionId, Session> accepted_;  ///< sessions between on_upgrade() and on_open()
   std::atomic<std::uint64_t> connections_{0};
   std::atomic<std::uint64_t> refusals_{0};
   std::atomic<std::uint64_t> unusable_{0};
-  std::unique_ptr<Control> control_;
+  std::unique_ptr<Control> control_;  ///< the control thread
 };
 
 /// `chicane serve`: binds the port and answers simulators until `stop`. `viewer` (may be null) and `assets`

@@ -22,7 +22,7 @@
 namespace chicane::wire {
 namespace {
 
-constexpr double kPatienceInCycles = 3.0;  // patience over the usual cycle
+constexpr double kPatienceInCycles = 3.0;  // usual cycles that a controller may be silent; chosen
 
 }  // namespace
 
@@ -47,10 +47,6 @@ bool CommandReceiver::sampled(double time) noexcept {
   return !is_late;
 }
 
-void CommandReceiver::answered(const protocol::UdacitySteer& steer) noexcept { waiting_ = steer; }
-
-void CommandReceiver::disconnected() noexcept { waiting_.reset(); }
-
 model::Command CommandReceiver::act(double time, double speed) noexcept {
   if (!has_any_) return acting_;
   acting_ = player_.guard(received_, time, speed);
@@ -66,15 +62,16 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr milliseconds kConnectTimeout{1000};
-constexpr milliseconds kNap{5};
+// Chosen.
+constexpr milliseconds kConnectTimeout{1000};  // longest attempt to connect
+constexpr milliseconds kConnectPoll{5};        // period of looking whether an attempt has ended
 
 Clock::duration duration(double seconds) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 
-/// Says in the request that this simulator plays stop plans.
+/// Address of a controller with the request for stop plans.
 std::string with_stop_plan(const std::string& url) {
   constexpr std::string_view kScheme = "ws://";
   const char* separator = url.find('?') != std::string::npos                   ? "&"
@@ -83,7 +80,7 @@ std::string with_stop_plan(const std::string& url) {
   return fmt::format("{}{}{}", url, separator, protocol::kStopPlanItem);
 }
 
-/// The lines of a reply, from the car's frame to W.
+/// Writes plan and reference of a reply into `plan`: from the car's frame to W.
 void place_lines(const protocol::UdacitySteer& reply, const model::State& car, controller::Plan& plan) {
   const double c = cos(car.psi), s = sin(car.psi);
   const auto to_world = [&](const Vec2& p) {
@@ -103,7 +100,7 @@ void place_lines(const protocol::UdacitySteer& reply, const model::State& car, c
   }
 }
 
-/// One run: the car and the token that goes round between it and the controller.
+/// One run: the car, and the exchange with the controller, in which telemetry and answer alternate.
 class Simulation {
  public:
   Simulation(const SimulateOptions& options, const scenario::Scenario& scenario, const SimulateHooks& hooks,
@@ -144,7 +141,7 @@ class Simulation {
   }
 
  private:
-  /// Physics up to now; says when the car is stopped because no commands arrive, and when it stands.
+  /// Physics up to now. Reports when the car is stopped because no commands come, and when it stands.
   void move(Clock::time_point now) {
     const double speed = car_.speed();
     began_ += duration(
@@ -152,13 +149,14 @@ class Simulation {
     if (stops_.look(car_, receiver_.is_timed_out(), speed, [&] { return silence(now); })) ++report_.stops;
   }
 
-  /// Why no command acts.
+  /// Reason for which no command comes, a clause.
   [[nodiscard]] std::string silence(Clock::time_point now) const {
     if (client_ == nullptr) return "no controller is connected";
     if (!asked_) return "the answers come too late";
     return fmt::format("the controller has not answered for {:.1f} s", seconds(now - *asked_));
   }
 
+  /// Ends the run after SimulateOptions::hopeless_after without a usable answer.
   void lose_hope(Clock::time_point now) {
     if (options_.hopeless_after.count() == 0 || report_.connections == 0) return;
     if (now - last_answer_ >= options_.hopeless_after)
@@ -168,7 +166,7 @@ class Simulation {
   /// Connects while the physics runs, with pauses between attempts.
   void connect(Clock::time_point now) {
     if (attempt_.valid()) {
-      if (attempt_.wait_for(kNap) != std::future_status::ready) return;
+      if (attempt_.wait_for(kConnectPoll) != std::future_status::ready) return;
       auto result = attempt_.get();
       next_attempt_ = now + options_.retry_after;
       if (result) return begin(std::move(*result));
@@ -178,11 +176,12 @@ class Simulation {
       if (now - last_connected_ >= options_.lost_after) why_ = "no controller: " + last_failure_;
       return;
     }
-    if (now < next_attempt_) return std::this_thread::sleep_for(kNap);
+    if (now < next_attempt_) return std::this_thread::sleep_for(kConnectPoll);
     attempt_ =
         std::async(std::launch::async, [url = url_] { return net::Client::connect(url, kConnectTimeout); });
   }
 
+  /// Begins the exchange on a new connection.
   void begin(std::unique_ptr<net::Client> client) {
     client_ = std::move(client);
     last_failure_.clear();
@@ -190,9 +189,10 @@ class Simulation {
     log_.say(fmt::format("connected to {}", options_.url));
     asked_.reset();
     due_ = Clock::now();
-    deliver("2");  // the original pings once, because its time-out is a thousand times too long
+    deliver("2");  // pings once, as the original does: its period is a thousand times too long
   }
 
+  /// Drops the connection, for the reason `why`.
   void lose(const std::string& why) {
     log_.say(fmt::format("connection lost: {}", why));
     client_.reset();
@@ -201,6 +201,7 @@ class Simulation {
     next_attempt_ = last_connected_ + options_.retry_after;
   }
 
+  /// Sends a message, or drops the connection.
   void deliver(const std::string& text) {
     if (auto sent = client_->send_text(text); !sent) lose(sent.error().message);
   }
@@ -223,7 +224,7 @@ class Simulation {
     }
   }
 
-  /// Telemetry, and with it the command of the last answer reaches the wheels.
+  /// Samples and sends telemetry; the command of the last answer acts from now on.
   void ask(Clock::time_point now) {
     due_.reset();
     asked_ = now;
@@ -235,6 +236,7 @@ class Simulation {
                        : protocol::encode_telemetry(frame_.measurement));
   }
 
+  /// Reports a silent controller, and drops the connection after a long silence.
   void watch(Clock::duration silence) {
     if (silence >= options_.give_up_after) {
       ++report_.silences;
@@ -246,6 +248,7 @@ class Simulation {
                          options_.complain_after.count()));
   }
 
+  /// Takes a message of the controller.
   void hear(const std::string& text) {
     const protocol::UdacityReply reply = protocol::parse_reply(text);
     if (const auto* packet = std::get_if<protocol::UdacityPacket>(&reply)) return hear_packet(*packet);
@@ -268,6 +271,7 @@ class Simulation {
       log_.complain("the controller answered telemetry with \"manual\": it did not understand it");
   }
 
+  /// Takes a usable answer, which came `waited` [s] after the telemetry.
   void accept(const protocol::UdacitySteer& steer, double waited) {
     ++report_.answers;
     if (!steer.clamped.empty())
@@ -304,21 +308,22 @@ class Simulation {
   CommandReceiver receiver_;
   run::StopNews stops_;
   SimulateReport report_;
-  std::string why_;  ///< the run is over
+  std::string why_;  ///< reason of an early end of the run; empty: it goes on
 
-  std::future<Result<std::unique_ptr<net::Client>>> attempt_;
-  Clock::time_point next_attempt_{};
-  Clock::time_point last_connected_{};
-  Clock::time_point last_answer_{};
-  std::string last_failure_;
-  std::unique_ptr<net::Client> client_;
+  std::future<Result<std::unique_ptr<net::Client>>> attempt_;  ///< attempt to connect; invalid: none runs
+  Clock::time_point next_attempt_{};                           ///< time of the next attempt
+  Clock::time_point last_connected_{};                         ///< time at which the last connection ended
+  Clock::time_point last_answer_{};                            ///< time of the last usable answer
+  std::string last_failure_;                                   ///< message of the last failed attempt
+  std::unique_ptr<net::Client> client_;                        ///< connection; null: none
 
-  Clock::time_point began_{};               ///< wall time of physics time 0
-  std::optional<Clock::time_point> due_;    ///< time of the next telemetry
-  std::optional<Clock::time_point> asked_;  ///< telemetry is out since then
-  bool is_reported_silent_ = false;
-  bool is_manual_ = false;
-  telemetry::Frame frame_;
+  Clock::time_point began_{};             ///< wall time of physics time 0
+  std::optional<Clock::time_point> due_;  ///< time of the next telemetry; none: an answer is awaited
+  std::optional<Clock::time_point>
+      asked_;                        ///< time of the telemetry without an answer; none: all are answered
+  bool is_reported_silent_ = false;  ///< the silence since asked_ was reported
+  bool is_manual_ = false;           ///< the last telemetry was that of manual driving
+  telemetry::Frame frame_;           ///< frame of the current cycle
 };
 
 }  // namespace
@@ -333,9 +338,11 @@ Result<SimulateReport> simulate(const SimulateOptions& options, const scenario::
 
 namespace {
 
-constexpr std::chrono::seconds kRestartAfter{1};
-constexpr unsigned kPatience = 1;  // patience of the guard with a group that was asked to end [s]
+// Chosen.
+constexpr std::chrono::seconds kRestartAfter{1};  // least time between two starts of the controller
+constexpr unsigned kPatience = 1;                 // [s] time for a group to end before it is killed
 
+/// Becomes the shell that runs the command.
 [[noreturn]] void run_shell(const char* command, const sigset_t& no_signals) {
   ::sigprocmask(SIG_SETMASK, &no_signals, nullptr);
   const int nothing = ::open("/dev/null", O_RDWR);
@@ -345,7 +352,7 @@ constexpr unsigned kPatience = 1;  // patience of the guard with a group that wa
   ::_exit(127);
 }
 
-/// Ends as the shell ended.
+/// Ends this process with the status or signal of the shell.
 [[noreturn]] void end_like(int status, const sigset_t& no_signals) {
   if (WIFSIGNALED(status)) {
     ::sigprocmask(SIG_SETMASK, &no_signals, nullptr);
@@ -355,8 +362,8 @@ constexpr unsigned kPatience = 1;  // patience of the guard with a group that wa
   ::_exit(WEXITSTATUS(status));
 }
 
-/// The head of the group: waits for the shell; asked to end, or left alone, it ends the whole group. Forked
-/// from a program with several threads, so it only makes system calls.
+/// Head of the group: waits for the shell. Ends the whole group when asked to, or when the parent dies. Makes
+/// system calls only, because it is forked from a program with several threads.
 [[noreturn]] void guard(const char* command, pid_t parent) {
   ::setpgid(0, 0);
   sigset_t awaited, no_signals;
@@ -365,8 +372,8 @@ constexpr unsigned kPatience = 1;  // patience of the guard with a group that wa
   for (const int signal : {SIGCHLD, SIGTERM, SIGALRM}) ::sigaddset(&awaited, signal);
   ::sigprocmask(SIG_SETMASK, &awaited, nullptr);
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-  ::prctl(PR_SET_CHILD_SUBREAPER, 1);     // whom the shell leaves behind is ours to wait for
-  if (::getppid() != parent) ::_exit(0);  // parent died before we listened
+  ::prctl(PR_SET_CHILD_SUBREAPER, 1);     // orphans of the shell become children of this process
+  if (::getppid() != parent) ::_exit(0);  // the parent died before prctl()
   const pid_t shell = ::fork();
   if (shell == 0) run_shell(command, no_signals);
   for (bool is_ending = false;;) {
@@ -383,7 +390,7 @@ constexpr unsigned kPatience = 1;  // patience of the guard with a group that wa
     while ((ended = ::waitpid(-1, &status, WNOHANG)) > 0) {
       if (ended == shell && !is_ending) end_like(status, no_signals);
     }
-    if (ended < 0) ::_exit(0);  // none is left
+    if (ended < 0) ::_exit(0);  // no process is left
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Endpoint of viewers: sends each its frames, laps and changes at the pace of its link.
+// Endpoint of viewers: sends frames, laps, changes and parameters to each viewer at the pace of its link.
 #include "chicane/wire/viewer.hpp"
 
 #include <fmt/format.h>
@@ -14,48 +14,50 @@
 namespace chicane::wire {
 
 namespace foxglove = protocol::foxglove;
-using detail::change_channel;
+using detail::channel_of;
 using detail::data_of;
 using detail::delivery_of;
-using detail::frame_channel;
-using detail::lap_channel;
 using detail::past_channel;
 using protocol::Cadence;
 
 namespace {
 
-/// Topic number of the time for net::Delivery::kNewest; channels use their own number plus one.
+// Chosen, except for kGoingAway.
+
+// Topic of the time for net::Delivery::kNewest; channels use their own number plus one.
 constexpr std::uint32_t kTimeTopic = 1'000'000;
 
-constexpr std::size_t kMostWaiting = 100;  // viewers between the upgrade and its end
+constexpr std::size_t kMostWaiting = 100;  // most viewers between upgrade and connection
 
-// Kept messages that are sent before the viewer has read those before; with what else waits they stay below
+// Most messages that wait for a viewer to read, so that kept messages stay below
 // net::ServerOptions::max_queue.
 constexpr std::size_t kPage = 192;
 
-// Least time between newest frames, and between plans, which are ten times as large, while past frames are
-// sent on a slow line [s].
+// Least time between newest frames, and between plans, while past frames are sent over a slow link [s]. A
+// plan is ten times as large as the rest of a frame.
 constexpr double kNewestBesidePast = 0.1;
 constexpr double kPlanBesidePast = 0.5;
-// Bytes in flight to a viewer beyond its window, so that the newest frame does not wait for the past [byte].
+// Bytes beyond a viewer's window that the newest frame may use, so that it does not wait for past frames.
 constexpr std::size_t kReserve = 4096;
 
-constexpr std::uint16_t kGoingAway = 1001;  // RFC 6455 §7.4.1
+constexpr std::uint16_t kGoingAway = 1001;  // close code by RFC 6455 §7.4.1
 
 constexpr std::string_view kTrigger = "std_srvs/srv/Trigger";
 constexpr std::string_view kSetBool = "std_srvs/srv/SetBool";
 constexpr std::string_view kAsk = "chicane_msgs/srv/Ask";
 
+/// Channels that a viewer is offered.
 std::vector<foxglove::Channel> channels(bool with_past) {
   std::vector<foxglove::Channel> list;
   for (const protocol::RosTopic& topic : protocol::ros_topics()) {
     list.push_back({static_cast<std::uint32_t>(list.size()), topic.name, topic.type, topic.schema});
   }
-  const protocol::RosTopic& frame = protocol::ros_topics()[frame_channel()];
+  const protocol::RosTopic& frame = protocol::ros_topics()[channel_of(Cadence::kFrame)];
   if (with_past) list.push_back({past_channel(), detail::kPastTopic, frame.type, frame.schema});
   return list;
 }
 
+/// Service without arguments; `done` is the sentence of its success.
 std::function<Result<std::string>(std::string_view)> trigger(std::function<Result<void>()> action,
                                                              std::string done) {
   return [action = std::move(action), done = std::move(done)](std::string_view) -> Result<std::string> {
@@ -64,6 +66,7 @@ std::function<Result<std::string>(std::string_view)> trigger(std::function<Resul
   };
 }
 
+/// Service with one text as its argument.
 std::function<Result<std::string>(std::string_view)> ask(
     std::string_view name, std::function<Result<std::string>(std::string_view)> service) {
   return [name, service = std::move(service)](std::string_view request) -> Result<std::string> {
@@ -131,7 +134,7 @@ void ViewerEndpoint::dismiss(const Patience& patience) {
   using Steady = std::chrono::steady_clock;
   const auto begin = Steady::now();
   auto heard = begin;
-  std::map<net::ConnectionId, std::pair<std::size_t, std::uint64_t>> reading;  // bytes waiting, bytes read
+  std::map<net::ConnectionId, std::pair<std::size_t, std::uint64_t>> reading;  // messages waiting, bytes read
   std::promise<void> gone;
   std::set<net::ConnectionId> informed;
   bool has_ticked = false;
@@ -155,14 +158,13 @@ void ViewerEndpoint::dismiss(const Patience& patience) {
   gone.get_future().wait();
 }
 
-/// Whether a viewer has everything of the run that it asked for.
 bool ViewerEndpoint::has_all(net::ConnectionId id, const Client& client) const {
   const auto is_sent = [&](std::uint32_t channel, const KeptMessage* next) {
     return next == nullptr || !client.subscriptions.contains(channel);
   };
   return server_->waiting(id) == 0 && client.past_before == 0 && client.owed.empty() && !client.is_behind &&
-         is_sent(lap_channel(), memory_.lap_from(client.next_lap)) &&
-         is_sent(change_channel(), memory_.change_from(client.next_change));
+         is_sent(channel_of(Cadence::kLap), memory_.lap_from(client.next_lap)) &&
+         is_sent(channel_of(Cadence::kEvent), memory_.change_from(client.next_change));
 }
 
 void ViewerEndpoint::change_run(std::function<void(protocol::Run&)> change) {
@@ -196,7 +198,7 @@ void ViewerEndpoint::schedule() {
 void ViewerEndpoint::tick() {
   const bool is_new = latest_.take(frame_);
   const bool begins = is_new && has_frame_ && frame_.cycle < cycle_;
-  if (begins && !std::exchange(has_forgotten_, false)) forget();  // before the changes of the run that begins
+  if (begins && !std::exchange(has_forgotten_, false)) forget();  // before changes of the new run are kept
   tell_changes(begins);
   note_lap(begins);
   if (is_new) note_frame();
@@ -213,14 +215,12 @@ void ViewerEndpoint::tick() {
   for (auto& [id, client] : clients_) serve(id, client);
 }
 
-/// Sends the present first, then missing laps and changes, then the past.
 void ViewerEndpoint::serve(net::ConnectionId id, Client& client) {
   send_newest(id, client);
   send_owed(id, client);
   send_kept(id, client);
 }
 
-/// Descriptions that a paced viewer has subscribed to: roads are as large as a second of frames.
 void ViewerEndpoint::send_owed(net::ConnectionId id, Client& client) {
   while (!client.owed.empty() && has_room(id, client)) {
     const std::uint32_t channel = *client.owed.begin();
@@ -232,7 +232,6 @@ void ViewerEndpoint::send_owed(net::ConnectionId id, Client& client) {
   }
 }
 
-/// Drops messages from before the run's restart.
 void ViewerEndpoint::forget() {
   memory_.forget();
   ledger_.restart();
@@ -242,27 +241,25 @@ void ViewerEndpoint::forget() {
 void ViewerEndpoint::note_frame() {
   has_frame_ = true;
   cycle_ = frame_.cycle;
-  memory_.add_frame(frame_.time, protocol::ros_topics()[frame_channel()].encode(frame_, options_.run));
+  memory_.add_frame(frame_.time,
+                    protocol::ros_topics()[channel_of(Cadence::kFrame)].encode(frame_, options_.run));
 }
 
-/// Sends changes that the run has applied, in order, and changed parameters to the viewers that follow them.
-/// `begins`: the newest frame belongs to a run that began since the last call; changes before it belong to
-/// the earlier run.
 void ViewerEndpoint::tell_changes(bool begins) {
   if (options_.parameters == nullptr) return;
   for (const telemetry::Change& change : options_.parameters->applied()) {
-    if (begins && change.cycle > frame_.cycle + 1) continue;
+    if (begins && change.cycle > frame_.cycle + 1) continue;  // belongs to the earlier run
     if (change.starts_anew && !begins && !std::exchange(has_forgotten_, true)) forget();
     ledger_.add(change);
     const std::string payload =
         protocol::encode_change(change.time, change.cycle, change.name.view(), change.value.view());
-    // Manual driving changes thirty times a second, which is of no interest later.
+    // A person's controls change thirty times a second: send them, but keep none for later viewers.
     if (change.name.view() != "manual.steer" && change.name.view() != "manual.throttle") {
       memory_.add_change(change.time, payload);
       continue;  // send_kept() sends it
     }
     for (auto& [id, client] : clients_) {
-      const auto wanted = client.subscriptions.find(change_channel());
+      const auto wanted = client.subscriptions.find(channel_of(Cadence::kEvent));
       if (wanted == client.subscriptions.end()) continue;
       deliver(id, client, data_of(wanted->second, change.time, payload));
     }
@@ -286,7 +283,6 @@ void ViewerEndpoint::send_parameters(const std::vector<foxglove::Parameter>& val
   }
 }
 
-/// Keeps the laps of this run for viewers that come later.
 void ViewerEndpoint::note_lap(bool begins) {
   TimedLap completed;
   if (!latest_lap_.take(completed)) return;
@@ -295,10 +291,9 @@ void ViewerEndpoint::note_lap(bool begins) {
   frame.completed_lap = completed.lap;
   options_.run.lap_setup = ledger_.setup(completed.time, completed.lap.lap_time);
   memory_.add_lap(completed.lap, completed.time,
-                  protocol::ros_topics()[lap_channel()].encode(frame, options_.run));
+                  protocol::ros_topics()[channel_of(Cadence::kLap)].encode(frame, options_.run));
 }
 
-/// The newest frame for a paced viewer, once there is room for it.
 void ViewerEndpoint::send_newest(net::ConnectionId id, Client& client) {
   if (!client.pace || !client.is_behind || !has_frame_ || server_->waiting(id) >= kPage ||
       !client.pace->has_room(kReserve))
@@ -321,8 +316,7 @@ void ViewerEndpoint::send_newest(net::ConnectionId id, Client& client) {
   }
 }
 
-/// Sends a page of unsent messages; the next page when this one has been read. All at once would exceed a
-/// connection's queue.
+// All messages at once would exceed a connection's queue.
 void ViewerEndpoint::send_kept(net::ConnectionId id, Client& client) {
   const auto send_page = [&](std::uint32_t channel, std::uint64_t& next, auto from) {
     const auto wanted = client.subscriptions.find(channel);
@@ -335,12 +329,11 @@ void ViewerEndpoint::send_kept(net::ConnectionId id, Client& client) {
     }
     return false;
   };
-  const bool has_laps = send_page(lap_channel(), client.next_lap, &RunMemory::lap_from);
-  send_page(change_channel(), client.next_change, &RunMemory::change_from);
-  if (has_laps && client.past_before > 0) send_past(id, client);  // the table before the curves
+  const bool has_laps = send_page(channel_of(Cadence::kLap), client.next_lap, &RunMemory::lap_from);
+  send_page(channel_of(Cadence::kEvent), client.next_change, &RunMemory::change_from);
+  if (has_laps && client.past_before > 0) send_past(id, client);  // viewers show laps before past frames
 }
 
-/// A page of the past, from the present backwards.
 void ViewerEndpoint::send_past(net::ConnectionId id, Client& client) {
   const std::uint32_t subscription = client.subscriptions.at(past_channel());
   const std::size_t room = room_for(id, client);
@@ -353,7 +346,6 @@ void ViewerEndpoint::send_past(net::ConnectionId id, Client& client) {
   if (sent > 0) send_text(id, foxglove::past_left(memory_.frames_before(client.past_before)));
 }
 
-/// Messages of the next page.
 std::size_t ViewerEndpoint::room_for(net::ConnectionId id, const Client& client) const {
   return has_room(id, client) ? kPage - server_->waiting(id) : 0;
 }
@@ -382,15 +374,15 @@ void ViewerEndpoint::send_cadence(Cadence cadence) {
 void ViewerEndpoint::send_channel(std::uint32_t channel) {
   const protocol::RosTopic& topic = protocol::ros_topics()[channel];
   const std::uint64_t time = protocol::to_nanoseconds(frame_.time);
-  // Encoded for the first that wants it; viewers of one kind use the same subscription numbers and share
+  // Encode once, for the first subscriber. Viewers of one kind use equal subscription numbers and share
   // bytes.
   std::optional<std::string> payload;
   std::map<std::uint32_t, net::Bytes> by_subscription;
   for (auto& [id, client] : clients_) {
     const auto wanted = client.subscriptions.find(channel);
     if (wanted == client.subscriptions.end()) continue;
-    if (client.pace && topic.cadence == Cadence::kFrame) continue;  // send_newest()
-    if (client.owed.contains(channel)) continue;                    // send_owed()
+    if (client.pace && topic.cadence == Cadence::kFrame) continue;  // sent by send_newest()
+    if (client.owed.contains(channel)) continue;                    // sent by send_owed()
     if (!payload) payload = topic.encode(frame_, options_.run);
     net::Bytes& bytes = by_subscription[wanted->second];
     if (!bytes)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Endpoint of viewers: publishes a run by the Foxglove WebSocket protocol.
 #pragma once
 
 #include <chrono>
@@ -23,70 +24,76 @@
 
 namespace chicane::wire {
 
-/// Requests of viewers to the run. Called on the network thread: hand the request over and return. An empty
-/// function is not offered. A failure's sentence is shown to the operator.
+/// Services of a run for viewers, called on the network thread: they hand the request over and return. Empty
+/// functions are not offered. The viewer gets the sentence of a failure.
 struct ViewerServices {
   std::function<Result<void>(bool paused)> pause;  ///< "/pause", std_srvs/srv/SetBool
   std::function<Result<void>()> step;   ///< "/step", std_srvs/srv/Trigger: one control cycle while paused
   std::function<Result<void>()> reset;  ///< "/reset", std_srvs/srv/Trigger: restarts the run
-  /// Service "/what_if", chicane_msgs/srv/Ask: begins to compute another future; its number as a text.
-  std::function<Result<std::string>(std::string_view question)> what_if{};
-  /// Service "/rival", chicane_msgs/srv/Ask: begins or ends a race against a second car; its number as a
+  /// Service "/what_if", chicane_msgs/srv/Ask: begins to compute another future; returns its number as a
   /// text.
+  std::function<Result<std::string>(std::string_view question)> what_if{};
+  /// Service "/rival", chicane_msgs/srv/Ask: begins or ends a race against a second car; returns its number
+  /// as a text.
   std::function<Result<std::string>(std::string_view question)> rival{};
 };
 
+/// Options of a ViewerEndpoint.
 struct ViewerOptions {
-  double rate_limit = 60.0;  ///< frames per second sent at most [Hz]; (0, 1000]
-  protocol::Run run{};
+  double rate_limit = 60.0;  ///< most frames sent per second [Hz], (0, 1000]; chosen: as many as screens show
+  protocol::Run run{};       ///< description of the run
   ViewerServices services{};
-  protocol::foxglove::ParameterStore* parameters =
-      nullptr;                      ///< outlives the endpoint; null: none are offered
-  std::function<double()> clock{};  ///< [s], rising; empty: the machine's steady clock
+  /// Settings of the run; outlives the endpoint; null: none are offered.
+  protocol::foxglove::ParameterStore* parameters = nullptr;
+  std::function<double()> clock{};  ///< clock [s], which rises; empty: the machine's steady clock
 };
 
-/// Shows a run to viewers: our dashboard, Foxglove, Lichtblick, PlotJuggler or a script, all by the Foxglove
-/// WebSocket protocol (docs/viewer.md). The newest frame wins on its way from the control thread, and again
-/// on its way to each viewer: slow ones see fewer frames and hold nothing up.
+/// Endpoint that shows a run to viewers by the Foxglove WebSocket protocol (docs/viewer.md): our dashboard,
+/// Foxglove, Lichtblick, PlotJuggler or a script. Only the newest frame is kept between the control thread
+/// and the network thread, and again before each viewer: slow viewers get fewer frames and delay nothing.
 ///
-/// Viewers that may only watch (net::UpgradeRequest::may_control) get everything but services and set
+/// Viewers that may only watch (net::UpgradeRequest::may_control) can neither call services nor set
 /// parameters.
 ///
-/// Laps and changes of the run are sent from its beginning to every subscriber. The query of a viewer's
-/// address may ask for more: "past" offers the topic "/chicane/past", the frames of the last minutes before
-/// it came (run_memory.hpp), the newest first, behind the present; "paced" sends no more than the viewer
-/// acknowledges in time (run_memory.hpp, foxglove::Received), the newest frame before everything else.
+/// Each subscriber gets the laps and changes of the whole run. The query of a viewer's address may ask for
+/// more:
 ///
-/// Must outlive the server it is started with.
+///     past     offers the topic "/chicane/past": frames of the last minutes (run_memory.hpp), the newest
+///     first,
+///              sent after present frames
+///     paced    sends no more than the viewer acknowledges in time (run_memory.hpp, foxglove::Received), the
+///              newest frame before everything else
+///
+/// Must outlive the server that it is started with.
 class ViewerEndpoint final : public Endpoint {
  public:
   explicit ViewerEndpoint(ViewerOptions options);
 
-  /// One thread, the control thread: neither waits nor allocates.
+  /// Publishes a frame; called on the control thread. Neither waits nor allocates.
   void publish(const telemetry::Frame& frame) noexcept { latest_.put(frame); }
-  /// The same thread: a lap was completed at `time` [s], before the next frame.
+  /// Publishes a lap that was completed at `time` [s], before the next frame; called on the control thread.
   void publish(const telemetry::CompletedLap& lap, double time) noexcept { latest_lap_.put({lap, time}); }
-  /// Sets another track, car or controller; Run::building and is_paused stay unchanged. Any thread, but not
-  /// while on_start runs.
+  /// Replaces the description of the run; Run::building and is_paused stay. Any thread, but not during
+  /// on_start().
   void set_run(protocol::Run run);
-  /// Publishes news of the run's limit. Any thread.
+  /// Publishes an answer on the run's limit. Any thread.
   void set_limit(lap_time::LimitAnswer answer);
-  /// Part of it changes, the road excepted. Any thread.
+  /// Changes the description of the run, except for its road. Any thread.
   void change_run(std::function<void(protocol::Run&)> change);
   /// Reports a pause that no viewer asked for. Any thread.
   void set_paused(bool paused) {
     change_run([paused](protocol::Run& run) { run.is_paused = paused; });
   }
-  /// Reports the end of the run: a word ("finished", "stopped", "failed") and a sentence. A restart revokes
-  /// it. Any thread.
+  /// Reports the end of the run: a word ("finished", "stopped", "failed") and a sentence. A restart of the
+  /// run revokes it. Any thread.
   void set_end(std::string kind, std::string reason);
-  /// Wait of a run's end for viewers.
+  /// Longest waits for viewers at the end of a run; chosen.
   struct Patience {
-    std::chrono::milliseconds silent{2000};  ///< time without any of them reading
-    std::chrono::milliseconds whole{10'000};
+    std::chrono::milliseconds silent{2000};   ///< time in which no viewer reads anything
+    std::chrono::milliseconds whole{10'000};  ///< time in all
   };
-  /// Sends all that waits and closes the connections; returns when viewers have gone, or when `patience` is
-  /// over. Call it on the thread that runs the experiment, at its end.
+  /// Sends all waiting messages and closes the connections. Returns when the viewers have gone, or after
+  /// `patience`. Call it at the end of the run, on the thread that drives.
   void dismiss(const Patience& patience);
   void dismiss() { dismiss(Patience{}); }
 
@@ -97,53 +104,80 @@ class ViewerEndpoint final : public Endpoint {
   void on_close(net::ConnectionId id, std::string_view why) override;
 
  private:
+  /// Connected viewer.
   struct Client {
-    bool may_control = false;
-    bool wants_past = false;
-    std::optional<LinkPace> pace{};  ///< none: all messages are sent at once
-    std::uint64_t past_before = 0;   ///< frames of memory_ with lower numbers are still to be sent
+    bool may_control = false;        ///< may call services and set parameters
+    bool wants_past = false;         ///< asked for past frames
+    std::optional<LinkPace> pace{};  ///< congestion control; none: messages are sent at once
+    std::uint64_t past_before = 0;   ///< past frames with lower numbers are not sent yet
     bool is_behind = false;          ///< paced, and the newest frame is not sent yet
-    double whole_sent_at = 0.0;      ///< time of the last message with plan and all else [s]
-    std::set<std::uint32_t> owed{};  ///< channels of descriptions, paced, sent behind the newest
-    double newest_sent_at = 0.0;     ///< [s]
-    std::optional<protocol::foxglove::Received> heard{};  ///< reading report to be answered
-    double heard_at = 0.0;                                ///< [s]
-    std::uint64_t next_lap = 0;                           ///< next message of memory_ for it
-    std::uint64_t next_change = 0;
-    std::map<std::uint32_t, std::uint32_t> subscriptions;  ///< channel → subscription
-    bool wants_all_parameters = false;
-    std::set<std::string, std::less<>> wanted_parameters;
+    double whole_sent_at = 0.0;      ///< time at which all topics of a frame were sent last [s]
+    std::set<std::uint32_t>
+        owed{};                   ///< paced, channels whose description is to be sent after the newest frame
+    double newest_sent_at = 0.0;  ///< time at which a newest frame was sent last [s]
+    std::optional<protocol::foxglove::Received> heard{};   ///< acknowledgement that is not answered yet
+    double heard_at = 0.0;                                 ///< time of its arrival [s]
+    std::uint64_t next_lap = 0;                            ///< number from which laps are not sent yet
+    std::uint64_t next_change = 0;                         ///< number from which changes are not sent yet
+    std::map<std::uint32_t, std::uint32_t> subscriptions;  ///< subscription by channel
+    bool wants_all_parameters = false;                     ///< follows all parameters
+    std::set<std::string, std::less<>> wanted_parameters;  ///< names of the parameters that it follows
   };
+  /// Service that viewers may call.
   struct ServiceEntry {
     protocol::foxglove::Service description;
-    std::function<Result<std::string>(std::string_view request)> call;  ///< the sentence of its success
+    std::function<Result<std::string>(std::string_view request)>
+        call;  ///< returns the sentence of its success
   };
 
+  /// Adds a service.
   void offer(std::string_view name, std::string_view type,
              std::function<Result<std::string>(std::string_view)> call);
+  /// Calls tick() at the rate limit, from now on.
   void schedule();
+  /// Sends everything that is new to all viewers.
   void tick();
+  /// Drops messages from before a restart of the run.
   void forget();
+  /// Sends applied changes in order, and changed parameters to viewers that follow them. `begins`: the newest
+  /// frame belongs to a run that began since the last call.
   void tell_changes(bool begins);
   void send_parameters(const std::vector<protocol::foxglove::Parameter>& values);
+  /// Keeps a new lap for all viewers; `begins` as in tell_changes().
   void note_lap(bool begins);
+  /// Keeps the newest frame for viewers that connect later.
   void note_frame();
+  /// Sends the newest frame first, then missing laps and changes, then past frames.
   void serve(net::ConnectionId id, Client& client);
+  /// Sends the newest frame to a paced viewer, once there is room for it.
   void send_newest(net::ConnectionId id, Client& client);
+  /// Sends descriptions that a paced viewer has subscribed to: a road is as large as a second of frames.
   void send_owed(net::ConnectionId id, Client& client);
+  /// Sends a page of laps and changes; the next page follows when this one has been read.
   void send_kept(net::ConnectionId id, Client& client);
+  /// Sends a page of past frames, backwards from the newest.
   void send_past(net::ConnectionId id, Client& client);
+  /// Sends a binary message that must arrive, and counts its bytes if the viewer is paced.
   void deliver(net::ConnectionId id, Client& client, net::Bytes bytes);
+  /// Number of messages that fit into the current page.
   [[nodiscard]] std::size_t room_for(net::ConnectionId id, const Client& client) const;
+  /// Whether page and link have room for another message.
   [[nodiscard]] bool has_room(net::ConnectionId id, const Client& client) const;
+  /// Whether a viewer has got everything of the run that it asked for.
   [[nodiscard]] bool has_all(net::ConnectionId id, const Client& client) const;
+  /// Time by the endpoint's clock [s].
   [[nodiscard]] double now() const;
+  /// Sends all topics of a cadence.
   void send_cadence(protocol::Cadence cadence);
+  /// Sends the current content of a channel to its subscribers.
   void send_channel(std::uint32_t channel);
   void send_text(net::ConnectionId id, std::string text);
+  /// Sends an error message to a viewer.
   void warn(net::ConnectionId id, std::string_view sentence);
+  /// Runs a task on the network thread, or now if no server has started.
   void on_network(std::function<void()> task);
 
+  // Requests of viewers (viewer_requests.cpp).
   void handle(net::ConnectionId id, const protocol::foxglove::Subscribe& message);
   void handle(net::ConnectionId id, const protocol::foxglove::Unsubscribe& message);
   void handle(net::ConnectionId id, const protocol::foxglove::GetParameters& message);
@@ -154,24 +188,25 @@ class ViewerEndpoint final : public Endpoint {
   void handle(net::ConnectionId id, const protocol::foxglove::Received& message);
 
   ViewerOptions options_;
-  std::vector<ServiceEntry> services_;
-  std::string session_;
+  std::vector<ServiceEntry> services_;  ///< offered services, by their number
+  std::string session_;                 ///< id of this session for viewers that connect again
+  /// Completed lap, and the time of its end.
   struct TimedLap {
     telemetry::CompletedLap lap;
     double time = 0.0;  ///< [s]
   };
-  Latest<telemetry::Frame> latest_;
-  Latest<TimedLap> latest_lap_;
-  telemetry::Frame frame_;
-  bool has_frame_ = false;
-  RunMemory memory_;
-  telemetry::LapLedger ledger_;
-  std::uint64_t cycle_ = 0;     ///< cycle of the last frame
-  bool has_forgotten_ = false;  ///< the next run begins, and its first frame has not come yet
-  std::mutex starting_;         ///< guards server_ until it is set
+  Latest<telemetry::Frame> latest_;  ///< newest frame from the control thread
+  Latest<TimedLap> latest_lap_;      ///< newest lap from the control thread
+  telemetry::Frame frame_;           ///< frame that viewers get
+  bool has_frame_ = false;           ///< frame_ is set
+  RunMemory memory_;                 ///< messages for viewers that connect later
+  telemetry::LapLedger ledger_;      ///< settings of each lap
+  std::uint64_t cycle_ = 0;          ///< cycle of the last frame
+  bool has_forgotten_ = false;       ///< forget() was called for a run whose first frame has not come yet
+  std::mutex starting_;              ///< guards server_ until it is set
   net::Server* server_ = nullptr;
-  std::map<net::ConnectionId, Client> clients_;
-  std::map<net::ConnectionId, Client> upgrades_;  ///< upgrades between on_upgrade and on_open
+  std::map<net::ConnectionId, Client> clients_;   ///< connected viewers
+  std::map<net::ConnectionId, Client> upgrades_;  ///< viewers between on_upgrade() and on_open()
 };
 
 }  // namespace chicane::wire

@@ -43,8 +43,8 @@ void ViewerEndpoint::handle(net::ConnectionId id, const foxglove::Subscribe& mes
                            is_past ? detail::kPastTopic : topics[channel].name));
       continue;
     }
-    // Send the current state, because the next change may be far away. Frames of a paced viewer, and past
-    // frames, follow from the next tick on: the description of the run comes first.
+    // Send the current content, because the next change may be far away. Frames of a paced viewer, and past
+    // frames, follow from the next tick on, after the description of the run.
     if (is_past) {
       client.past_before = memory_.end();
       continue;
@@ -103,11 +103,11 @@ void ViewerEndpoint::handle(net::ConnectionId id, const foxglove::SetParameters&
     if (const Result<void> result = is_allowed ? options_.parameters->set(parameter) : Result<void>{};
         !result)
       warn(id, result.error().message);
-    // The value that holds now, also after a refusal: the viewer's slider must not show another.
+    // Answer with the value that holds now, also after a refusal, so that the viewer's slider shows it.
     if (auto now = options_.parameters->get(parameter.name)) values.push_back(std::move(*now));
   }
   if (message.request) send_text(id, foxglove::parameter_values(values, message.request));
-  // A choice of preset changes more than its own value.
+  // A choice of preset changes other parameters as well.
   for (foxglove::Parameter& other : options_.parameters->news()) {
     const bool is_listed = std::any_of(values.begin(), values.end(), [&](const foxglove::Parameter& value) {
       return value.name == other.name;
@@ -122,7 +122,7 @@ void ViewerEndpoint::handle(net::ConnectionId id, const foxglove::SubscribeParam
     return warn(id, "subscribeParameterUpdates: this run has no parameters");
   Client& client = clients_[id];
   if (message.names.empty()) client.wants_all_parameters = true;
-  // Names that do not exist are dropped, so a client cannot make us remember more than there is.
+  // Drop unknown names, so that a client cannot fill the memory.
   for (const std::string& name : message.names) {
     if (options_.parameters->get(name)) client.wanted_parameters.insert(name);
   }

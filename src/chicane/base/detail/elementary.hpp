@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Elementary functions (sin, cos, atan, exp, log, …) for doubles and for packs, with the same bits for both.
 #pragma once
 
 #include <bit>
@@ -17,6 +18,7 @@ namespace chicane::elementary {
 /// Microsystems, 1993, freely distributable): e_rem_pio2.c, k_sin.c, k_cos.c, s_atan.c, e_atan2.c, e_exp.c,
 /// e_log.c.
 
+// Scalar counterparts of pack functions, by which the templates below are compiled for double.
 [[nodiscard]] CHICANE_INLINE inline std::uint64_t bits_of(double x) noexcept {
   return std::bit_cast<std::uint64_t>(x);
 }
@@ -25,7 +27,7 @@ namespace chicane::elementary {
   return std::copysign(magnitude, sign);
 }
 
-/// Turns bits back into numbers of type V.
+/// Conversion of bits (one integer of 64 bits for each double) to a number of type V.
 template <class V>
 struct Number {
   using Bits = typename V::BitsType;
@@ -37,9 +39,10 @@ struct Number<double> {
   CHICANE_INLINE static double from(Bits bits) noexcept { return std::bit_cast<double>(bits); }
 };
 
-/// Added to a number below 2^51 this leaves its nearest integer in the last bits.
-inline constexpr double kToInteger = 6755399441055744.0;  // 1.5 · 2^52
-inline constexpr double kMostAngle = 1e9;  // [rad] sin and cos of more are NaN: n π/2 has lost its bits
+/// 1.5 · 2^52. The sum of this constant and a number below 2^51 has the nearest integer in its last bits.
+inline constexpr double kToInteger = 6755399441055744.0;
+/// Limit of |x| [rad] from which on sin and cos are NaN. Chosen: n π/2 by reduce() has lost its bits there.
+inline constexpr double kMostAngle = 1e9;
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -51,7 +54,7 @@ struct Reduced {
   typename Number<V>::Bits quadrant;  // n in the last bits
 };
 
-/// Subtracts n π/2 in three parts of π/2 (Cody and Waite).
+/// Argument reduction by Cody and Waite: subtracts n π/2, with π/2 as a sum of three parts.
 template <class V>
 [[nodiscard]] CHICANE_INLINE inline Reduced<V> reduce(const V& x) noexcept {
   constexpr double kHalfPiHigh = 1.57079632673412561417e+00;    // first 33 bits of π/2
@@ -93,8 +96,8 @@ template <class V>
   return w + (((1.0 - w) - half) + (z * r - x * tail));
 }
 
-/// Bit 0 of the quadrant exchanges sine and cosine, bit 1 is the sign. Calls of sin and cos for one argument
-/// share their work, and cost little more than one.
+/// Sine, and cosine below. Bit 0 of the quadrant exchanges the kernels of sine and cosine, bit 1 is the sign.
+/// Compilers share the common work of sin and cos of one argument, which cost little more than one.
 template <class V>
 [[nodiscard]] CHICANE_INLINE inline V sin(const V& x) noexcept {
   using Bits = typename Number<V>::Bits;
@@ -112,8 +115,9 @@ template <class V>
   return select(abs(x) < V(kMostAngle), turned, V(kNaN));
 }
 
-/// atan|x| = atan(c) + atan a, where c = 0, 1/2, 1, 3/2 or ∞ (`high` + `low` is atan(c)) is chosen by the
-/// bounds 7/16, 11/16, 19/16 and 39/16. `t` are the coefficients of atan a, |a| < 7/16.
+/// Arc tangent, odd in x: atan|x| = atan(c) + atan(a) with a = (|x| − c) / (1 + c |x|), |a| < 7/16. The
+/// bounds 7/16, 11/16, 19/16 and 39/16 choose c = 0, 1/2, 1, 3/2 or ∞. `high` + `low` is atan(c); `t` are the
+/// coefficients of the polynomial of atan(a).
 template <class V>
 [[nodiscard]] CHICANE_INLINE inline V atan(const V& x) noexcept {
   constexpr double high[] = {4.63647609000806093515e-01, 7.85398163397448278999e-01,
@@ -146,13 +150,13 @@ template <class V>
 [[nodiscard]] CHICANE_INLINE inline V atan2(const V& y, const V& x) noexcept {
   constexpr double pi = 3.14159265358979311600e+00, pi_low = 1.22464679914735317723e-16;
   const V zero(0.0);
-  const auto on_x = (y == zero) & (x == x);  // NOLINT(misc-redundant-expression): a number
+  const auto on_x = (y == zero) & (x == x);  // NOLINT(misc-redundant-expression): false for NaN
   const V a = elementary::atan(abs(select(on_x, zero, y / x)));
   const auto is_behind = (copysign(V(1.0), x) < zero) & (on_x | (x < zero));
   return copysign(select(is_behind, pi - (a - pi_low), a), y);
 }
 
-/// 2^k exp(r) with |r| <= ln 2 / 2; saturates where 2^k would leave the normal numbers.
+/// Exponential as 2^k exp(r) with |r| <= ln 2 / 2; saturates where 2^k would leave the normal numbers.
 template <class V>
 [[nodiscard]] CHICANE_INLINE inline V exp(const V& x) noexcept {
   using Bits = typename Number<V>::Bits;
@@ -206,7 +210,8 @@ template <class V>
   return select((x > V(0.0)) & (x < V(kInfinity)), result, special);
 }
 
-/// tanh by exp; two terms of the series for small x, and ±1 where the difference is below half an ulp.
+/// Hyperbolic tangent by exp; by two terms of its series for small x; ±1 from where its distance from
+/// ±1 is below half an ulp.
 template <class V>
 [[nodiscard]] CHICANE_INLINE inline V tanh(const V& x) noexcept {
   // Below 1e-4 the next term, 2/15 x⁵, is less than 2e-17 x; above 22 1 − tanh x is less than 2^-62.
@@ -216,7 +221,7 @@ template <class V>
   return select(a < V(1e-4), x - x * x * x / 3.0, large);
 }
 
-/// asin and acos: NaN beyond ±1.
+/// Arc sine, and arc cosine below: NaN beyond ±1.
 template <class V>
 [[nodiscard]] CHICANE_INLINE inline V asin(const V& x) noexcept {
   return elementary::atan2(x, sqrt((1.0 - x) * (1.0 + x)));
@@ -241,7 +246,7 @@ template <class V>
 /// power() for whole exponents up to ±64, else exp(exponent · log x).
 template <class V>
 [[nodiscard]] CHICANE_INLINE inline V pow(const V& x, double exponent) noexcept {
-  constexpr double kMostFactors = 64.0;  // limit that math.hpp promises
+  constexpr double kMostFactors = 64.0;  // chosen: limit that math.hpp states for pow
   const bool is_whole = exponent >= -kMostFactors && exponent <= kMostFactors &&
                         exponent == static_cast<double>(static_cast<int>(exponent));
   if (is_whole) return elementary::power(x, static_cast<int>(exponent));

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Operations on one register of doubles for each instruction set (SSE2, AVX2, AVX-512, NEON), for pack.hpp.
 #pragma once
 
 #include <bit>
@@ -21,17 +22,28 @@
 
 namespace chicane {
 
-/// One register of W doubles and what instruction sets do with it. For base/pack.hpp alone.
+/// Calls f(std::integral_constant<std::size_t, 0>) … f(…<N − 1>): a loop that is always unrolled, and whose
+/// index is a constant.
+template <std::size_t N, class F>
+CHICANE_INLINE inline constexpr void unroll(F&& f) noexcept {
+  [&]<std::size_t... I>(std::index_sequence<I...>) CHICANE_INLINE {
+    (f(std::integral_constant<std::size_t, I>{}), ...);
+  }
+  (std::make_index_sequence<N>{});
+}
+
+/// Registers and their operations. For base/pack.hpp alone.
 namespace pack_detail {
 
+/// One register of W doubles: its types, and moves from and to memory.
 template <std::size_t W>
 struct Lanes {
   using Real [[gnu::vector_size(W * 8)]] = double;
   using Integer [[gnu::vector_size(W * 8)]] = long long;
   using Unsigned [[gnu::vector_size(W * 8)]] = unsigned long long;
 
-  /// Aligned and unaligned load and store of one register. Not by memcpy, which takes the variable's address
-  /// and so keeps it in memory.
+  // Loads and stores of one register, aligned to its size or not at all. Pointers are cast in place of
+  // memcpy, which would take the variable's address and so keep the variable in memory.
   CHICANE_INLINE static Real load(const double* from) noexcept {
     return *static_cast<const Aligned*>(static_cast<const void*>(from));
   }
@@ -50,7 +62,8 @@ struct Lanes {
   using Unaligned [[gnu::vector_size(W * 8), gnu::may_alias, gnu::aligned(8)]] = double;
 };
 
-/// Operations by the compiler's vector extensions alone.
+/// Operations by the compiler's vector extensions alone. The specialisations of Ops below replace those for
+/// which an instruction set has an instruction that compilers do not find by themselves.
 template <std::size_t W>
 struct Portable {
   using Real = typename Lanes<W>::Real;
@@ -93,7 +106,7 @@ struct Portable {
     return a;
   }
   CHICANE_INLINE static Real round(Real a) noexcept {
-    constexpr double kBig = 4503599627370496.0;  // 2^52: no fraction from here on
+    constexpr double kBig = 4503599627370496.0;  // 2^52: larger doubles have no fraction
     const Integer sign = std::bit_cast<Integer>(a) & (Integer{} + INT64_MIN);
     const Real magnitude = std::bit_cast<Real>(std::bit_cast<Integer>(a) ^ sign);
     const Real rounded = (magnitude + kBig) - kBig;
@@ -105,6 +118,7 @@ struct Portable {
   }
 };
 
+/// Operations of the instruction set `Arch` on a register of W doubles.
 template <class Arch, std::size_t W>
 struct Ops : Portable<W> {
   static_assert(std::is_same_v<Arch, arch::Baseline>, "this file is not compiled for that instruction set");
@@ -123,6 +137,7 @@ struct Ops<arch::Baseline, 2> : Portable<2> {
 #endif
 
 #if defined(__AVX2__) && defined(__FMA__)
+/// Rounding to the nearest integer, ties to even, without exceptions.
 constexpr int kToNearest = _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC;
 template <>
 struct Ops<arch::Avx2, 2> : Ops<arch::Baseline, 2> {
@@ -211,7 +226,7 @@ struct Ops<arch::Neon, 2> : Portable<2> {
 };
 #endif
 
-/// Rows of a W × W block become its columns.
+/// Transposes a block of W × W numbers, one row in each of W registers.
 template <std::size_t W, class Real>
 CHICANE_INLINE inline void transpose_block(Real* r) noexcept {
   if constexpr (W == 2) {
@@ -253,13 +268,9 @@ CHICANE_INLINE inline void transpose_block(Real* r) noexcept {
 /// result[p] = Op(operands[p]…) for every register p, always unrolled.
 template <auto Op, class Result, class... Operands>
 CHICANE_INLINE inline Result by_parts(const Operands&... operands) noexcept {
-  return [&]<std::size_t... P>(std::index_sequence<P...>) CHICANE_INLINE {
-    Result r;
-    const auto part = [&](auto p) CHICANE_INLINE { r.part[p] = Op(operands.part[p]...); };
-    (part(std::integral_constant<std::size_t, P>{}), ...);
-    return r;
-  }
-  (std::make_index_sequence<Result::kParts>{});
+  Result r;
+  unroll<Result::kParts>([&](auto p) CHICANE_INLINE { r.part[p] = Op(operands.part[p]...); });
+  return r;
 }
 
 }  // namespace pack_detail

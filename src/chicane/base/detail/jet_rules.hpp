@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Jet: a value with its first and second derivatives, whose type says which are not zero. Chain rule by
+// types. Derivatives are computed forward, along with the value (automatic differentiation).
 #pragma once
 
 #include <algorithm>
@@ -17,18 +19,20 @@ namespace chicane {
 
 /// A set of the variables of one stage, one bit each: states first, then inputs.
 using Variables = std::uint32_t;
+/// Limit of the number of variables of a stage; Pairs has 24 · 25 / 2 = 300 bits in five words.
 inline constexpr int kMaxVariables = 24;
 
+/// The set of variable `index` alone.
 [[nodiscard]] constexpr Variables variable(int index) noexcept { return Variables{1} << index; }
-/// Variables 0 … count − 1.
+/// The set of variables 0 … count − 1.
 [[nodiscard]] constexpr Variables first_variables(int count) noexcept { return variable(count) - 1; }
 [[nodiscard]] constexpr bool contains(Variables set, int index) noexcept { return (set >> index & 1U) != 0; }
 [[nodiscard]] constexpr int size_of(Variables set) noexcept { return std::popcount(set); }
-/// Number of members of the set before `index`: where its entry is stored.
+/// Number of members of the set below `index`: the position at which the entry of `index` is stored.
 [[nodiscard]] constexpr std::size_t rank_of(Variables set, int index) noexcept {
   return static_cast<std::size_t>(std::popcount(set & (variable(index) - 1)));
 }
-/// The member with `rank` others before it.
+/// The member with `rank` lower members: inverse of rank_of().
 [[nodiscard]] constexpr int member_of(Variables set, int rank) noexcept {
   for (; rank > 0; --rank) set &= set - 1;
   return std::countr_zero(set);
@@ -38,6 +42,7 @@ inline constexpr int kMaxVariables = 24;
 struct Pairs {
   std::array<std::uint64_t, 5> words{};  ///< public, so that the type is structural: use the functions
 
+  /// Bit of the pair (i, j): pairs are numbered by columns of the upper triangle.
   static constexpr int index_of(int i, int j) noexcept {
     return i <= j ? j * (j + 1) / 2 + i : i * (i + 1) / 2 + j;
   }
@@ -54,6 +59,7 @@ struct Pairs {
     for (const auto word : words) sum += std::popcount(word);
     return sum;
   }
+  /// Number of pairs of the set before (i, j): the position at which its entry is stored.
   [[nodiscard]] constexpr std::size_t rank(int i, int j) const noexcept {
     const auto at = static_cast<unsigned>(index_of(i, j));
     int sum = std::popcount(words[at / 64] & ((std::uint64_t{1} << (at % 64)) - 1));
@@ -79,6 +85,7 @@ struct Pairs {
   [[nodiscard]] constexpr bool is_within(const Pairs& o) const noexcept { return (*this | o) == o; }
 };
 
+/// A pair of variables, i <= j.
 struct Pair {
   int i = 0;
   int j = 0;
@@ -99,11 +106,14 @@ template <Pairs Set>
 
 /// A value with its derivatives. Only derivatives that are not zero by construction are stored; the type says
 /// which. Sums and products have the types that follow from the rules of calculus, so the sparsity pattern of
-/// a problem is read off the return types of its functions, and zeros are never computed.
+/// a problem is read off the return types of its functions, and zeros are never computed. Comparisons see
+/// values only. No allocation; everything is inlined.
 ///
-/// V is double, or a pack of doubles with one stage in each lane. `First`: variables with a first derivative;
-/// `Unit`: those of them where it is exactly 1 (not stored). With Order 2 also second derivatives, for the
-/// pairs in `Second`. Comparison and branches see values only. No allocation; everything is inlined.
+///   V       double, or a pack of doubles with one stage in each lane
+///   Order   1: first derivatives; 2: second derivatives, too
+///   First   variables with a first derivative
+///   Unit    variables of First whose first derivative is exactly 1, which is not stored
+///   Second  pairs with a second derivative; none for Order 1
 template <class V, int Order, Variables First, Variables Unit = 0, Pairs Second = Pairs{}>
 struct Jet {
   static_assert((Unit & ~First) == 0);
@@ -112,9 +122,10 @@ struct Jet {
   static constexpr Variables kFirst = First;
   static constexpr Variables kUnit = Unit;
   static constexpr Pairs kSecond = Second;
+  /// Numbers of stored first and second derivatives.
   static constexpr std::size_t kSlopes = static_cast<std::size_t>(size_of(First & ~Unit));
   static constexpr std::size_t kCurvatures = static_cast<std::size_t>(Second.size());
-  /// Whether every derivative by variables 0 … n is stored, so that loops apply.
+  /// Whether every derivative by variables 0 … n is stored, so that chain_dense() applies.
   static constexpr bool kIsDense = Unit == 0 && First != 0 && (First & (First + 1)) == 0 &&
                                    (Order < 2 || Second == Pairs::of(First, First));
 
@@ -131,14 +142,14 @@ struct Jet {
     slopes.fill(V(0.0));
     curvatures.fill(V(0.0));
   }
-  /// The same with more stored zeros.
+  /// The value and derivatives of a jet that stores fewer; those it lacks become stored zeros.
   template <Variables F, Variables U, Pairs P>
   requires(
       (F & ~First) == 0 && (Unit & ~U) == 0 && P.is_within(Second) &&
       !(F == First && U == Unit &&
         P == Second)) constexpr Jet(const Jet<V, Order, F, U, P>& narrow);  // NOLINT: as safe as int to long
 
-  /// Variable number `index` itself. Pre: it is in First.
+  /// The variable `index` of First with this value: its derivative by itself is 1.
   static constexpr Jet variable(const V& value, int index) requires(Unit == 0) {
     Jet result(value);
     result.slopes[rank_of(First, index)] = V(1.0);
@@ -161,7 +172,7 @@ template <int N, int Order = 1>
 using FullJet = Jet<double, Order, first_variables(N), 0,
                     Order == 2 ? Pairs::of(first_variables(N), first_variables(N)) : Pairs{}>;
 
-/// Variable number `Index` itself.
+/// The variable `Index` with this value: its derivative by itself is 1.
 template <int Order, int Index, class V>
 [[nodiscard]] constexpr auto seed(const V& value) {
   Jet<V, Order, variable(Index), variable(Index)> result;
@@ -169,16 +180,21 @@ template <int Order, int Index, class V>
   return result;
 }
 
+/// Whether T is a Jet or a LooseJet (loose_jet.hpp).
 template <class T>
 inline constexpr bool kIsJet = false;
 template <class V, int O, Variables F, Variables U, Pairs S>
 inline constexpr bool kIsJet<Jet<V, O, F, U, S>> = true;
 template <class T>
 concept AnyJet = kIsJet<std::remove_cvref_t<T>>;
-/// A constant beside a jet: double, or the pack of its values.
+/// Arguments of a function of two, of which at least one is a jet.
+template <class A, class B>
+concept WithJet = AnyJet<A> || AnyJet<B>;
+/// A constant beside a jet of type J: a double, or a pack of the jet's values.
 template <class S, class J>
 concept ConstantFor = !AnyJet<S> && std::convertible_to<S, typename J::Value>;
 
+/// Value without derivatives, as of plain numbers (math.hpp).
 template <class V, int O, Variables F, Variables U, Pairs S>
 [[nodiscard]] constexpr const V& value_of(const Jet<V, O, F, U, S>& x) noexcept {
   return x.v;
@@ -186,6 +202,7 @@ template <class V, int O, Variables F, Variables U, Pairs S>
 
 namespace jet {
 
+/// Value of a jet; a constant itself.
 template <class T>
 [[nodiscard]] CHICANE_INLINE inline constexpr const auto& value(const T& x) noexcept {
   if constexpr (AnyJet<T>)
@@ -194,7 +211,7 @@ template <class T>
     return x;
 }
 
-/// Partial derivatives known at compile time.
+/// Derivatives known at compile time: 0, 1 and −1. Products and sums with them cost nothing.
 struct Zero {};
 struct One {};
 struct Minus {};
@@ -204,6 +221,7 @@ inline constexpr bool kIsZero = std::is_same_v<T, Zero>;
 template <class T>
 inline constexpr bool kIsOne = std::is_same_v<T, One>;
 
+/// a · b, of numbers or derivatives known at compile time.
 template <class A, class B>
 [[nodiscard]] CHICANE_INLINE inline constexpr auto times(const A& a, const B& b) {
   if constexpr (kIsZero<A> || kIsZero<B>)
@@ -221,6 +239,7 @@ template <class A, class B>
   else
     return a * b;
 }
+/// A derivative as a number of type V.
 template <class V, class A>
 [[nodiscard]] CHICANE_INLINE inline constexpr V number(const A& a) {
   if constexpr (kIsZero<A>)
@@ -232,6 +251,7 @@ template <class V, class A>
   else
     return a;
 }
+/// a + b, of numbers or derivatives known at compile time.
 template <class V, class A, class B>
 [[nodiscard]] CHICANE_INLINE inline constexpr auto plus(const A& a, const B& b) {
   if constexpr (kIsZero<A>)
@@ -242,7 +262,7 @@ template <class V, class A, class B>
     return number<V>(a) + number<V>(b);
 }
 
-/// First derivative with respect to variable I, in the cheapest form.
+/// First derivative by variable I; Zero or One where the type says so.
 template <int I, AnyJet J>
 [[nodiscard]] CHICANE_INLINE inline constexpr auto slope(const J& x) {
   if constexpr (!contains(J::kFirst, I))
@@ -252,6 +272,7 @@ template <int I, AnyJet J>
   else
     return x.slopes[rank_of(J::kFirst & ~J::kUnit, I)];
 }
+/// Second derivative by variables I and K; Zero where the type says so.
 template <int I, int K, AnyJet J>
 [[nodiscard]] CHICANE_INLINE inline constexpr auto curvature(const J& x) {
   if constexpr (!J::kSecond.contains(I, K))
@@ -260,6 +281,7 @@ template <int I, int K, AnyJet J>
     return x.curvatures[J::kSecond.rank(I, K)];
 }
 
+/// Calls visit(std::integral_constant<int, 0>) … visit(…<N − 1>), always unrolled.
 template <int N, class Visit>
 CHICANE_INLINE inline constexpr void repeat(const Visit& visit) {
   [&]<int... n>(std::integer_sequence<int, n...>) CHICANE_INLINE {
@@ -268,7 +290,7 @@ CHICANE_INLINE inline constexpr void repeat(const Visit& visit) {
   (std::make_integer_sequence<int, N>{});
 }
 
-/// Outer derivatives of f(a, b): f_a, f_b, f_aa, f_ab, f_bb.
+/// Partial derivatives of an outer function f(a, b): f_a, f_b, f_aa, f_ab, f_bb.
 template <class A, class B, class AA, class AB, class BB>
 struct Partials {
   A a;
@@ -280,14 +302,15 @@ struct Partials {
 template <class A, class B, class AA, class AB, class BB>
 Partials(A, B, AA, AB, BB) -> Partials<A, B, AA, AB, BB>;
 
-/// Variables whose derivative is 1 in f(a, b): those with slope 1 in one argument that do not occur in the
-/// other.
+/// Variables by which f(a, b) has the derivative 1: their slope is 1 in one argument, f has the partial
+/// derivative 1 by that argument, and the other argument does not depend on them.
 template <class PA, class PB, AnyJet A, AnyJet B>
 constexpr Variables unit_of() noexcept {
   const Variables in_a = kIsZero<PA> ? 0 : A::kFirst;
   const Variables in_b = kIsZero<PB> ? 0 : B::kFirst;
   return (kIsOne<PA> ? A::kUnit & ~in_b : 0) | (kIsOne<PB> ? B::kUnit & ~in_a : 0);
 }
+/// Pairs by which f(a, b) has a second derivative.
 template <class PA, class PB, class AA, class AB, class BB, AnyJet A, AnyJet B>
 constexpr Pairs second_of() noexcept {
   Pairs set;
@@ -299,7 +322,7 @@ constexpr Pairs second_of() noexcept {
   return set;
 }
 
-/// The chain rule for jets that store everything: plain loops, quick to compile.
+/// Chain rule for f(a, b) of jets that store everything: plain loops, quick to compile. `value` is f(a, b).
 template <AnyJet A, class PA, class PB, class AA, class AB, class BB>
 [[nodiscard]] CHICANE_INLINE inline constexpr A chain_dense(const A& a, const A& b,
                                                             const typename A::Value& value,
@@ -324,7 +347,7 @@ template <AnyJet A, class PA, class PB, class AA, class AB, class BB>
   return r;
 }
 
-/// The chain rule for jets of any types: each entry on its own.
+/// Chain rule for f(a, b) of jets of any types: each stored derivative on its own. `value` is f(a, b).
 template <AnyJet A, AnyJet B, class PA, class PB, class AA, class AB, class BB>
 [[nodiscard]] CHICANE_INLINE inline constexpr auto chain_sparse(const A& a, const B& b,
                                                                 const typename A::Value& value,
@@ -358,7 +381,7 @@ template <AnyJet A, AnyJet B, class PA, class PB, class AA, class AB, class BB>
   return r;
 }
 
-/// The chain rule in two arguments.
+/// Chain rule for f(a, b). `value` is f(a, b).
 template <AnyJet A, AnyJet B, class PA, class PB, class AA, class AB, class BB>
 [[nodiscard]] CHICANE_INLINE inline constexpr auto chain(const A& a, const B& b,
                                                          const typename A::Value& value,
@@ -370,7 +393,7 @@ template <AnyJet A, AnyJet B, class PA, class PB, class AA, class AB, class BB>
   }
 }
 
-/// The chain rule in one argument: f(a) with its slope and curvature.
+/// Chain rule for f(a). `value` is f(a), `slope` f' and `curvature` f''.
 template <AnyJet A, class Slope, class Curvature>
 [[nodiscard]] CHICANE_INLINE inline constexpr auto chain(const A& a, const typename A::Value& value,
                                                          const Slope& slope, const Curvature& curvature) {

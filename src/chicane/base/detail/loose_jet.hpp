@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// LooseJet: a second-order jet (jet_rules.hpp) whose value, not its type, says which derivatives are not
+// zero.
 #pragma once
 
 #include <array>
@@ -11,10 +13,10 @@
 
 namespace chicane {
 
-/// A number with its first and second derivatives by `Count` variables (a jet of second order). Which of them
-/// may differ from zero is part of the value, not of the type as in Jet: all values of a function over arrays
-/// of one scalar have one type. Only derivatives in those sets are computed and copied; results have the bits
-/// of a Jet that stores everything.
+/// A number with its first and second derivatives by `Count` variables (a jet of second order). The members
+/// `first` and `second` say which derivatives may differ from zero, so that all values of a function over
+/// arrays of one scalar have one type. Only derivatives in those sets are computed and copied; results have
+/// the bits of a Jet that stores everything.
 template <class V, int Count>
 struct LooseJet {
   using Value = V;
@@ -24,14 +26,15 @@ struct LooseJet {
   static constexpr Pairs kSecond = Pairs::of(kFirst, kFirst);
   static constexpr std::size_t kSlopes = Count;
   static constexpr std::size_t kCurvatures = Count * (Count + 1) / 2;
-  static constexpr bool kIsDense = true;   ///< rows are looped over
-  static constexpr bool kIsSparse = true;  ///< rows say which derivatives they have (solver/sparse_row.hpp)
-  static constexpr bool kIsLoose = true;
+  static constexpr bool kIsDense = true;  ///< derivatives are visited by loops
+  static constexpr bool kIsSparse =
+      true;                               ///< has each_slope() and each_curvature(), as solver/sparse_row.hpp
+  static constexpr bool kIsLoose = true;  ///< tells LooseJet from Jet
 
-  V v;                                    ///< value
-  Variables first = 0;                    ///< variables with a slope; other slopes are stored zeros
-  Variables second = 0;                   ///< pairs of these have a curvature; others are not initialised
-  std::array<V, kSlopes> slopes;          ///< one for each variable
+  V v;                            ///< value
+  Variables first = 0;            ///< variables with a slope; other slopes are stored zeros
+  Variables second = 0;           ///< variables whose pairs have a curvature; others are uninitialised
+  std::array<V, kSlopes> slopes;  ///< one for each variable
   std::array<V, kCurvatures> curvatures;  ///< one for each pair, in the order of members<kSecond>()
 
   LooseJet() noexcept {}  // NOLINT: not initialised, like a plain double
@@ -40,7 +43,8 @@ struct LooseJet {
       : v(value) {
     slopes.fill(V(0.0));
   }
-  LooseJet(const LooseJet& o) noexcept { *this = o; }  // NOLINT: assigned
+  LooseJet(const LooseJet& o) noexcept { *this = o; }  // NOLINT: members are initialised by the assignment
+  /// Copies the curvatures of `second` alone, or all in one go.
   LooseJet& operator=(const LooseJet& o) noexcept {
     v = o.v;
     first = o.first;
@@ -55,7 +59,7 @@ struct LooseJet {
     });
     return *this;
   }
-  /// Variable number `index` itself.
+  /// The variable `index` with this value: its derivative by itself is 1.
   static LooseJet variable(const V& value, int index) noexcept {
     LooseJet result(value);
     result.first = chicane::variable(index);
@@ -72,8 +76,9 @@ struct LooseJet {
   LooseJet& operator*=(const LooseJet& o) { return *this = *this * o; }
   LooseJet& operator/=(const LooseJet& o) { return *this = *this / o; }
 
+  /// Answer of rows without content (solver/sparse_row.hpp), which a LooseJet never is.
   [[nodiscard]] static constexpr bool is_absent() noexcept { return false; }
-  /// Calls visit(i, first derivative).
+  /// Calls visit(i, first derivative) for each variable i of `first`.
   template <class Visit>
   CHICANE_INLINE void each_slope(const Visit& visit) const noexcept {
     for (Variables rest = first; rest != 0; rest &= rest - 1) {
@@ -81,14 +86,14 @@ struct LooseJet {
       visit(i, slopes[i]);
     }
   }
-  /// Calls visit(i, j, second derivative) with i <= j.
+  /// Calls visit(i, j, second derivative) for each pair i <= j of `second`.
   template <class Visit>
   CHICANE_INLINE void each_curvature(const Visit& visit) const noexcept {
     each_row(second, [&](std::size_t j) CHICANE_INLINE {
       return [&, j](std::size_t i, std::size_t at) CHICANE_INLINE { visit(i, j, curvatures[at]); };
     });
   }
-  /// Calls visit(j)(i, place of the curvature) with i <= j for each pair of the set.
+  /// Calls visit(j)(i, index in `curvatures`) for each pair i <= j of the set.
   template <class Visit>
   CHICANE_INLINE static void each_row(Variables set, const Visit& visit) noexcept {
     for (Variables rest = set; rest != 0; rest &= rest - 1) {
@@ -100,7 +105,7 @@ struct LooseJet {
       }
     }
   }
-  /// Calls visit(j)(i, place of the curvature) for all pairs, in loops of fixed length.
+  /// Calls visit(j)(i, index in `curvatures`) for all pairs i <= j, in loops of fixed length.
   template <class Visit>
   CHICANE_INLINE static void each_row(const Visit& visit) noexcept {
     std::size_t at = 0;
@@ -130,7 +135,8 @@ template <class V, int Count>
 
 namespace jet {
 
-/// Chain rule for f(a, b): `value` is f, `f` its partial derivatives.
+/// Chain rule for f(a, b). `value` is f(a, b), `f` has its partial derivatives. Jets with all pairs take
+/// loops of fixed length, which compilers vectorise; others visit the pairs of their sets.
 template <AnyLooseJet A, class PA, class PB, class AA, class AB, class BB>
 [[nodiscard]] inline A chain(const A& a, const A& b, const typename A::Value& value,
                              const Partials<PA, PB, AA, AB, BB>& f) {
@@ -180,7 +186,7 @@ requires(A::kFirst == 0) [[nodiscard]] inline B
     chain(const A& a, const B& b, const typename A::Value& value, const Partials<PA, PB, AA, AB, BB>& f) {
   return chain(B(a.v), b, value, f);
 }
-/// Chain rule for f(a): `value` is f, `slope` f', `curvature` f''.
+/// Chain rule for f(a). `value` is f(a), `slope` f' and `curvature` f''.
 template <AnyLooseJet A, class Slope, class Curvature>
 [[nodiscard]] inline A chain(const A& a, const typename A::Value& value, const Slope& slope,
                              const Curvature& curvature) {
@@ -214,7 +220,7 @@ template <AnyLooseJet A, class Slope, class Curvature>
 
 }  // namespace jet
 
-/// `a` where the mask is set, else `b`, with the derivatives of the one chosen.
+/// `a` where the mask is set, else `b`, each with its derivatives.
 template <class M, AnyLooseJet A>
 [[nodiscard]] inline A select(const M& mask, const A& a, const A& b) {
   using V = typename A::Value;

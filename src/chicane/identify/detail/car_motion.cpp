@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Motion of a car that is identified: four wheels, or the controllers' single track, driven by the commands
-// of a log from one of its samples on (docs/identification.md).
+// Motion of the car that is identified: the four-wheel car, or the controllers' single-track model, driven by
+// the commands of a log from one of its samples on.
 #include "chicane/identify/detail/car_motion.hpp"
 
 #include <algorithm>
@@ -14,22 +14,23 @@ namespace {
 
 constexpr double kGravity = 9.81;   // [m/s²]
 constexpr double kLeastLoad = 0.1;  // least load of a wheel, share of that at rest; as model::PredictionModel
-constexpr double kLeastSpeed = 0.3;    // [m/s] least rolling speed of a wheel in its slip
-constexpr double kLeastSquare = 1e-8;  // least square of a slip: the secant is 1 there
-// Damping of a tyre below kCreepSpeed, which springs when it stands (docs/model.md, eq. 19).
+constexpr double kLeastSpeed = 0.3;    // [m/s] least rolling speed in the slip of a wheel; chosen
+constexpr double kLeastSquare = 1e-8;  // added to a squared slip: no division by 0
+// Damping of a tyre below kCreepSpeed, because a standing tyre is a spring (docs/model.md, eq. 19).
 constexpr double kCreepSpeed = 3.0, kCreepDamping = 0.12;  // [m/s], [s/m]
 
-/// Solves `sign` · torque · b(x) + rest = stiffness · x for the slip x. b is what traction control or
-/// anti-lock leaves of the torque: 1 up to `hold.start`, 0 from `hold.end` on.
-double slip_for(double torque, double sign, const SlipLimit& hold, double stiffness, double rest) noexcept {
+/// Solves `sign` · torque · b(x) + rest = stiffness · x for the slip x. b is the share of the torque that
+/// traction control or anti-lock leaves: 1 up to `limit.start`, 0 from `limit.end` on.
+double slip_for(double torque, double sign, const SlipLimit& limit, double stiffness, double rest) noexcept {
   const double free = (sign * torque + rest) / stiffness;
-  if (!(sign * free > hold.start)) return std::clamp(free, -1.0, 1.0);
-  const double slope = torque / (hold.end - hold.start);
-  const double held = (sign * slope * hold.end + rest) / (stiffness + slope);
-  return std::clamp(sign * std::min(sign * held, hold.end), -1.0, 1.0);
+  if (!(sign * free > limit.start)) return std::clamp(free, -1.0, 1.0);
+  const double slope = torque / (limit.end - limit.start);
+  const double limited = (sign * slope * limit.end + rest) / (stiffness + slope);
+  return std::clamp(sign * std::min(sign * limited, limit.end), -1.0, 1.0);
 }
 
-/// e^(−x) for x >= 0 by its reciprocal series of fourth order: positive, within 1 % for all x.
+/// e^(−x) for x >= 0 by the reciprocal of its series of fourth order: positive, absolute error below 0.012
+/// for all x.
 double decay(double x) noexcept {
   return 1.0 / (1.0 + x * (1.0 + x * (0.5 + x * ((1.0 / 6.0) + x * (1.0 / 24.0)))));
 }
@@ -79,18 +80,19 @@ FourWheels::Motion FourWheels::steady(double vx, double vy, double r, double ste
 void FourWheels::advance(Motion& motion, double steer, double steer_middle, double force,
                          double drag) const noexcept {
   const double pressed = vehicle_.load(std::max(motion.vx, 0.0));
-  // Load transfer depends on the weight alone, not on downforce.
+  // Load transfer depends on the weight alone, not on downforce: share of the weight in the whole load.
   const double rest = kGravity / pressed;
-  // Accelerations that transfer load, with its lag, in the middle of the step.
+  // Lagged accelerations that transfer load, in the middle of the step.
   motion.along += load_share_ * (motion.forward - motion.along);
   motion.across += load_share_ * (motion.sideways - motion.across);
   const double c0 = cos(steer), s0 = sin(steer);
   const double cm = cos(steer_middle), sm = sin(steer_middle);
   motion.resistance = 0.0;
+  // Force of wheel `i` on the car, by the velocity `v` of its centre.
   const auto force_of = [&](std::size_t i, const model::Axle& axle, const model::Planar<double>& v) {
     const bool is_front = i < 2;
     const Tire& tire = tires_[i / 2];
-    // Slip across over the interval dt around the beginning of this step.
+    // Slip across the wheel, with the relaxation of the tyre over one step around the start of this one.
     const model::Planar<double> w = is_front ? model::in_turned_axes(v, c0, s0) : v;
     const double rolling = std::max(std::fabs(w.x), kLeastSpeed);
     const double keeps = decay(dt_ * rolling * per_relaxation_);
@@ -100,13 +102,13 @@ void FourWheels::advance(Motion& motion, double steer, double steer_middle, doub
 
     const double side = i % 2 == 0 ? -1.0 : 1.0;  // right wheels carry more in a left bend
     const double pressed_more = (is_front ? 0.5 : -0.5) * vehicle_.load_balance * (1.0 - rest) / axle.rest;
-    const double part = std::max(
+    const double part = std::max(  // load of the wheel over its load at rest
         kLeastLoad,
         1.0 + pressed_more + rest * (tire.per_along * motion.along + side * tire.per_across * motion.across));
     const double load = axle.rest * pressed * part * (1.0 + vehicle_.load_sensitivity * (1.0 - part));
     const double most = vehicle_.friction * load;
-    // Slip along the tyre from the balance of torque, tyre force and the wheel's inertia, in two steps of
-    // fixed point: the secant of the tyre curve is that of both slips together (similarity).
+    // Slip along the wheel from the balance of torque, tyre force and inertia of the wheel, by two
+    // fixed-point steps. The secant of the tyre curve is that of both slips together (similarity).
     const double z = tire.cornering * slip;
     const double inertia = inertia_ * rolling / dt_;
     const double holds_back =
@@ -137,8 +139,8 @@ void FourWheels::advance(Motion& motion, double steer, double steer_middle, doub
   const double r = motion.r + dt_ * turn_ * sum.moment;
   const double turned = 0.5 * dt_ * (motion.r + r);
   motion.r = r;
-  // The axes turn under the velocity, half before and half after the forces act. Sine and cosine by their
-  // series.
+  // The axes turn under the velocity: half of the angle before and half after the forces act. Sine and cosine
+  // are series of the small angle.
   const auto turn = [](double angle, double& x, double& y) {
     const double square = angle * angle;
     const double cosine = 1.0 - 0.5 * square * (1.0 - square * (1.0 / 12.0));
@@ -155,7 +157,7 @@ void FourWheels::advance(Motion& motion, double steer, double steer_middle, doub
 
 namespace {
 
-/// Means of commands over intervals of time, by their integral; each command holds until the next.
+/// Means of a commanded value over intervals of time, by its integral. A command acts until the next one.
 class Held {
  public:
   Held(const std::vector<SentCommand>& commands, double SentCommand::*value)
@@ -167,10 +169,11 @@ class Held {
       sums_.push_back(sum);
     }
   }
-  /// Pre: intervals come in the order of time.
+  /// Mean over an interval. Intervals in the order of time are fast.
   double mean(double from, double to) { return (integral(to) - integral(from)) / (to - from); }
 
  private:
+  /// Integral from the first command to `t` [s].
   double integral(double t) {
     while (at_ + 1 < commands_.size() && commands_[at_ + 1].time <= t) ++at_;
     while (at_ > 0 && commands_[at_].time > t) --at_;
@@ -178,17 +181,18 @@ class Held {
   }
   const std::vector<SentCommand>& commands_;
   double SentCommand::*value_;
-  std::vector<double> sums_;
-  std::size_t at_ = 0;
+  std::vector<double> sums_;  ///< integral up to each command
+  std::size_t at_ = 0;        ///< command of the last time
 };
 
-/// A step of second order: twice the change of the model's linearly implicit step of dt/2, and as stable. The
-/// step of first order would damp, and the fit would put its damping into inertia and lags. The model's front
-/// slip is linear in angles: `linear` is the steering angle with which it is the true slip.
+/// Step of second order: twice the change of the model's linearly implicit step of dt/2, and as stable. A
+/// step of first order has numerical damping, which the fit would attribute to inertia and lags. The front
+/// slip of the model is linear in angles; `linear` is the steering angle that makes it equal to the true
+/// slip.
 model::BodyMotion<double> midpoint_step(const model::PredictionModel& model, const Car& car,
                                         const model::BodyMotion<double>& from, double steer,
                                         double acceleration, double dt) noexcept {
-  constexpr double kLeast = 1.0;  // [m/s]
+  constexpr double kLeast = 1.0;  // [m/s] least speed in the slip angle; chosen
   const double across = (from.vy + car.vehicle.front_axle * from.r) / std::max(from.vx, kLeast);
   const double linear = steer + across - atan(across);
   model::BodyMotion<double> to = model.advance(from, linear, acceleration, 0.5 * dt);
@@ -198,7 +202,7 @@ model::BodyMotion<double> midpoint_step(const model::PredictionModel& model, con
   return to;
 }
 
-/// Speed and acceleration from measured speeds: a line of least squares through the samples around a moment.
+/// Speed and acceleration by measured speeds: a least-squares line through the samples around a moment.
 class MeasuredSpeed {
  public:
   explicit MeasuredSpeed(const std::vector<Sample>& samples) : samples_{samples} {}
@@ -206,7 +210,7 @@ class MeasuredSpeed {
     double value = 0.0;         ///< [m/s]
     double acceleration = 0.0;  ///< [m/s²]
   };
-  /// Pre: moments come in order.
+  /// Speed at a moment. Pre: moments come in order.
   Speed at(double t) {
     while (first_ + 1 < samples_.size() && samples_[first_].time < t - kReach) ++first_;
     double count = 0.0, sum_t = 0.0, sum_v = 0.0, tt = 0.0, tv = 0.0;
@@ -224,24 +228,26 @@ class MeasuredSpeed {
     return {(sum_v - slope * sum_t) / count, slope};
   }
 
+  /// Time of used samples on each side of the moment [s]; chosen.
  private:
-  static constexpr double kReach = 0.15;  ///< samples used, to each side of the moment [s]
+  static constexpr double kReach = 0.15;
   const std::vector<Sample>& samples_;
-  std::size_t first_ = 0;
+  std::size_t first_ = 0;  ///< first sample in reach of the last moment
 };
 
-/// Steering angle over a step [rad].
+/// Steering angle at the end of a step, and its mean over the step [rad].
 struct Followed {
   double end, mean;
 };
-/// Steering towards `asked`: at its largest rate, then, when the lag is slower than that, with the lag.
+/// Steering from `steer` towards `asked` over a step: at the rate limit `rate` [rad/s], then with the `lag`
+/// [s] once that is slower. `alone`: the lag without a rate limit.
 Followed follow(double steer, double asked, double lag, double rate,
                 const model::PredictionModel::Lag& alone) {
   const double apart = std::fabs(asked - steer);
   if (!(apart > rate * lag))
     return {asked + (steer - asked) * alone.end, asked + (steer - asked) * alone.mean};
   const double ramp = std::min(apart / rate - lag, Actuators::kStep);
-  const double left = apart - rate * ramp;
+  const double left = apart - rate * ramp;  // angle that remains after the ramp
   const double rest = Actuators::kStep - ramp;
   const double decay = lag > 1e-4 ? exp(-rest / lag) : (rest > 0.0 ? 0.0 : 1.0);
   const double area = (apart - 0.5 * rate * ramp) * ramp + left * lag * (1.0 - decay);
@@ -259,8 +265,7 @@ Actuators::Actuators(const DriveLog& log, const Car& car) : start_{log.samples.f
   Held pedal(log.commands, &SentCommand::throttle);
   const bool has_throttle = log.has_throttle();
   MeasuredSpeed measured(log.samples);
-  steer_.reserve(count);
-  steer_mean_.reserve(count);
+  points_.reserve(count);
   std::size_t sample = 0;
   double steer = log.commands.front().steer;
   double acceleration = 0.0;
@@ -284,14 +289,9 @@ Actuators::Actuators(const DriveLog& log, const Car& car) : start_{log.samples.f
       acceleration = wanted;
       pressed = throttle;
     }
-    steer_.push_back(steer);
-    speed_.push_back(speed);
-    throttle_.push_back(throttle);
-    pedal_.push_back(pressed);
-    acceleration_.push_back(acceleration);
     const Followed followed =
         follow(steer, asked, car.vehicle.steer_lag, car.vehicle.steer_rate_limit, lags.steer);
-    steer_mean_.push_back(followed.mean);
+    points_.push_back({steer, followed.mean, acceleration, throttle, pressed, speed});
     steer = followed.end;
     pressed = throttle + (pressed - throttle) * lags.drive.end;
     acceleration = has_throttle ? wanted + (acceleration - wanted) * lags.drive.end : wanted;
@@ -300,30 +300,23 @@ Actuators::Actuators(const DriveLog& log, const Car& car) : start_{log.samples.f
 
 namespace {
 
-/// Place and heading of a car, in W [m], [rad].
+/// Position [m] and yaw [rad] of the centre of mass in W.
 struct Place {
   double x, y, psi;
 };
 
-/// Measurement that a sensor would give `ahead` [s] after `at`.
+/// Sample of the log `ahead` [s] after the car was at `at`; velocities in the car's axes [m/s].
 Expected seen_at(const Car& car, const Place& at, double ahead, double vx, double vy, double r,
                  double acceleration, double steer) {
   const double course = at.psi + 0.5 * ahead * r;
   const double x = at.x + ahead * (vx * cos(course) - vy * sin(course));
   const double y = at.y + ahead * (vx * sin(course) + vy * cos(course));
   const double yaw = at.psi + ahead * r;
-  const double across = vy + car.reference * r;
-  return {x + car.reference * cos(yaw),
-          y + car.reference * sin(yaw),
-          yaw,
-          hypot(vx + ahead * acceleration, across),
-          r,
-          vx,
-          vy,
-          steer};
+  const double speed = hypot(vx + ahead * acceleration, vy + car.reference * r);
+  return {x + car.reference * cos(yaw), y + car.reference * sin(yaw), yaw, speed, r, vx, vy, steer};
 }
 
-/// Moves `at` by one step, with the means of both motions.
+/// Moves `at` by one step, with the mean of the velocities at both ends.
 void move(Place& at, double dt, double vx, double vy, double r, double next_vx, double next_vy,
           double next_r) {
   const double course = at.psi + 0.25 * dt * (r + next_r);
@@ -333,7 +326,21 @@ void move(Place& at, double dt, double vx, double vy, double r, double next_vx, 
   at.psi += 0.5 * dt * (r + next_r);
 }
 
-/// Drives by the controllers' model: for cars without has_four_wheels().
+/// Predicts samples first … last - 1: calls `advance(i)` for each step of the grid from point i on, and
+/// `seen(i, ahead)` for the sample `ahead` [s] after point i.
+template <class Advance, class Seen>
+void follow_samples(const DriveLog& log, const Actuators& actuators, std::size_t first, std::size_t last,
+                    const Advance& advance, const Seen& seen, std::vector<Expected>& expected) {
+  double t = log.samples[first].time;
+  std::size_t i = actuators.nearest(t);
+  for (std::size_t sample = first; sample < last; ++sample) {
+    const double until = log.samples[sample].time;
+    for (; until - t >= Actuators::kStep && i + 1 < actuators.size(); t += Actuators::kStep) advance(i++);
+    expected.push_back(seen(i, until - t));
+  }
+}
+
+/// Drives by the controllers' single-track model.
 void drive_single_track(const Car& car, const DriveLog& log, const Actuators& actuators, std::size_t first,
                         std::size_t last, const Start& start, std::vector<Expected>& expected) {
   constexpr double kStep = Actuators::kStep;
@@ -342,30 +349,25 @@ void drive_single_track(const Car& car, const DriveLog& log, const Actuators& ac
   const bool has_throttle = log.has_throttle();
   Place at{start[0], start[1], start[2]};
   model::BodyMotion<double> now{start[3], start[4], start[5], 0.0, 0.0};
-  double t = log.samples[first].time;
-  // The nearest step: the one before it would act up to 10 ms too late.
-  auto i = static_cast<std::size_t>((t - actuators.start()) / kStep + 0.5);
-  now.acceleration = actuators.acceleration(i);
-  for (std::size_t sample = first; sample < last; ++sample) {
-    const double until = log.samples[sample].time;
-    while (until - t >= kStep && i + 1 < actuators.size()) {
-      const double steer = 0.5 * (actuators.steer(i) + actuators.steer(i + 1)) + car.steer_offset;
-      // Without a pedal in the log the car keeps the measured speed.
-      const double wanted = has_throttle
-                                ? model::longitudinal_acceleration(car.vehicle, actuators.throttle(i), now.vx)
-                                : actuators.acceleration(i);
-      const double mean = has_throttle ? wanted + (now.acceleration - wanted) * lags.drive.mean : wanted;
-      model::BodyMotion<double> next = midpoint_step(model, car, now, steer, mean, kStep);
-      next.acceleration = has_throttle ? wanted + (now.acceleration - wanted) * lags.drive.end : wanted;
-      if (!has_throttle) next.vx = now.vx + actuators.speed(i + 1) - actuators.speed(i);
-      move(at, kStep, now.vx, now.vy, now.r, next.vx, next.vy, next.r);
-      now = next;
-      t += kStep;
-      ++i;
-    }
-    expected.push_back(seen_at(car, at, until - t, now.vx, now.vy, now.r, now.acceleration,
-                               actuators.steer(i) + car.steer_offset));
-  }
+  now.acceleration = actuators[actuators.nearest(log.samples[first].time)].acceleration;
+  const auto advance = [&](std::size_t i) {
+    const double steer = 0.5 * (actuators[i].steer + actuators[i + 1].steer) + car.steer_offset;
+    // Without a pedal in the log the car has the measured acceleration.
+    const double wanted = has_throttle
+                              ? model::longitudinal_acceleration(car.vehicle, actuators[i].throttle, now.vx)
+                              : actuators[i].acceleration;
+    const double mean = has_throttle ? wanted + (now.acceleration - wanted) * lags.drive.mean : wanted;
+    model::BodyMotion<double> next = midpoint_step(model, car, now, steer, mean, kStep);
+    next.acceleration = has_throttle ? wanted + (now.acceleration - wanted) * lags.drive.end : wanted;
+    if (!has_throttle) next.vx = now.vx + actuators[i + 1].speed - actuators[i].speed;
+    move(at, kStep, now.vx, now.vy, now.r, next.vx, next.vy, next.r);
+    now = next;
+  };
+  const auto seen = [&](std::size_t i, double ahead) {
+    return seen_at(car, at, ahead, now.vx, now.vy, now.r, now.acceleration,
+                   actuators[i].steer + car.steer_offset);
+  };
+  follow_samples(log, actuators, first, last, advance, seen, expected);
 }
 
 /// Drives by FourWheels.
@@ -373,38 +375,28 @@ void drive_four_wheels(const Car& car, const DriveLog& log, const Actuators& act
                        std::size_t last, const Start& start, std::vector<Expected>& expected) {
   constexpr double kStep = Actuators::kStep;
   const FourWheels wheels(car.vehicle, car.wheels, kStep);
-  const bool has_throttle = log.has_throttle();
   Place at{start[0], start[1], start[2]};
-  double t = log.samples[first].time;
-  // The nearest step: the one before it would act up to 10 ms too late.
-  auto i = static_cast<std::size_t>((t - actuators.start()) / kStep + 0.5);
-  const auto steer_at = [&](std::size_t n) { return actuators.steer(n) + car.steer_offset; };
-  const auto steer_mean = [&](std::size_t n) { return actuators.steer_mean(n) + car.steer_offset; };
+  const auto steer_at = [&](std::size_t n) { return actuators[n].steer + car.steer_offset; };
+  const auto steer_mean = [&](std::size_t n) { return actuators[n].steer_mean + car.steer_offset; };
+  const std::size_t begin = actuators.nearest(log.samples[first].time);
   FourWheels::Motion now =
-      wheels.steady(start[3], start[4], start[5], steer_at(i), actuators.acceleration(i));
-  for (std::size_t sample = first; sample < last; ++sample) {
-    const double until = log.samples[sample].time;
-    while (until - t >= kStep && i + 1 < actuators.size()) {
-      const FourWheels::Motion before = now;
-      const double drag = -model::longitudinal_acceleration(car.vehicle, 0.0, now.vx);
-      double force = 0.0;
-      if (has_throttle) {
-        const double pedal = 0.5 * (actuators.pedal(i) + actuators.pedal(i + 1));
-        force = model::longitudinal_acceleration(car.vehicle, pedal, now.vx) + drag;
-      } else {
-        // The acceleration that keeps the measured speed.
-        force =
-            (actuators.speed(i + 1) - actuators.speed(i)) / kStep - now.r * now.vy + now.resistance + drag;
-      }
-      wheels.advance(now, 0.5 * (steer_mean(i > 0 ? i - 1 : i) + steer_mean(i)), steer_mean(i), force, drag);
-      if (!has_throttle) now.vx = before.vx + actuators.speed(i + 1) - actuators.speed(i);
-      move(at, kStep, before.vx, before.vy, before.r, now.vx, now.vy, now.r);
-      t += kStep;
-      ++i;
-    }
-    expected.push_back(
-        seen_at(car, at, until - t, now.vx, now.vy, now.r, now.forward + now.r * now.vy, steer_at(i)));
-  }
+      wheels.steady(start[3], start[4], start[5], steer_at(begin), actuators[begin].acceleration);
+  const auto advance = [&, has_throttle = log.has_throttle()](std::size_t i) {
+    const FourWheels::Motion before = now;
+    const double drag = -model::longitudinal_acceleration(car.vehicle, 0.0, now.vx);
+    const double pedal = 0.5 * (actuators[i].pedal + actuators[i + 1].pedal);
+    // Without a pedal in the log the force keeps the measured speed.
+    const double force = has_throttle ? model::longitudinal_acceleration(car.vehicle, pedal, now.vx) + drag
+                                      : (actuators[i + 1].speed - actuators[i].speed) / kStep -
+                                            now.r * now.vy + now.resistance + drag;
+    wheels.advance(now, 0.5 * (steer_mean(i > 0 ? i - 1 : i) + steer_mean(i)), steer_mean(i), force, drag);
+    if (!has_throttle) now.vx = before.vx + actuators[i + 1].speed - actuators[i].speed;
+    move(at, kStep, before.vx, before.vy, before.r, now.vx, now.vy, now.r);
+  };
+  const auto seen = [&](std::size_t i, double ahead) {
+    return seen_at(car, at, ahead, now.vx, now.vy, now.r, now.forward + now.r * now.vy, steer_at(i));
+  };
+  follow_samples(log, actuators, first, last, advance, seen, expected);
 }
 
 }  // namespace
@@ -412,11 +404,8 @@ void drive_four_wheels(const Car& car, const DriveLog& log, const Actuators& act
 void drive(const Car& car, const DriveLog& log, const Actuators& actuators, std::size_t first,
            std::size_t last, const Start& start, std::vector<Expected>& expected) {
   expected.clear();
-  if (has_four_wheels(car.vehicle)) {
-    drive_four_wheels(car, log, actuators, first, last, start, expected);
-  } else {
-    drive_single_track(car, log, actuators, first, last, start, expected);
-  }
+  const auto drive_by = has_four_wheels(car.vehicle) ? drive_four_wheels : drive_single_track;
+  drive_by(car, log, actuators, first, last, start, expected);
 }
 
 }  // namespace chicane::identify

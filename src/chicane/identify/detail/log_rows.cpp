@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Samples and commands from bags of ROS 2, in MCAP files or SQLite.
+// Readers of recordings of this program, and of bags of ROS 2 in MCAP files or SQLite.
 #include "chicane/identify/detail/log_rows.hpp"
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ namespace {
 constexpr std::string_view kOdometry = protocol::OdometryMessage::kType;
 constexpr std::string_view kDrive = protocol::DriveMessage::kType;
 
-/// The rows of the topic that is meant.
+/// Rows of the topic `wanted`, or if that is empty of the only topic. `option`: the option that names one.
 template <class Row>
 Result<std::vector<Row>> chosen(const std::map<std::string, std::vector<Row>>& topics,
                                 const std::string& wanted, std::string_view type, const char* option,
@@ -89,19 +89,23 @@ Result<LogRows> read_mcap_rows(const std::string& file, const LogOptions& option
 
 namespace {
 
-constexpr int kMostBytes = 16 << 20;  // limit of one message
-constexpr int kMostTopics = 10'000;
-constexpr long long kMostSteps = 2'000'000'000;  // limit of SQLite's machine: some minutes
-constexpr int kStepsBetween = 100'000;           // SQLite's steps between two checks of the limit
+// Limits of what a file of a stranger may take; chosen.
+constexpr int kMostBytes = 16 << 20;             // size of one message [byte]
+constexpr int kMostTopics = 10'000;              // number of topics
+constexpr int kMostOperations = 10'000;          // operations of one compiled query
+constexpr long long kMostSteps = 2'000'000'000;  // steps of SQLite's machine: some minutes
+constexpr int kStepsBetween = 100'000;           // steps between two checks of kMostSteps
 
 using Database = std::unique_ptr<sqlite3, decltype(&sqlite3_close)>;
 using Statement = std::unique_ptr<sqlite3_stmt, decltype(&sqlite3_finalize)>;
 
-/// A database that is only read, and trusted in nothing: a file may have any schema and any bytes.
+/// Bag in a database that is opened for reading, with limits on work and memory: a file may have any schema
+/// and any bytes.
 class Bag {
  public:
   explicit Bag(std::string file) : file_{std::move(file)} {}
 
+  /// Reads the rows of the selected topics.
   Result<LogRows> read(const LogOptions& options) {
     if (const Result<void> opened = open(); !opened) return fail(opened.error());
     std::map<long long, std::pair<std::string, std::string>> topics;  // name and type
@@ -127,18 +131,21 @@ class Bag {
   }
 
  private:
+  /// Text of a column.
   static std::string text(sqlite3_stmt* row, int column) {
     const auto* const bytes = static_cast<const char*>(sqlite3_column_blob(row, column));
     return bytes == nullptr ? ""
                             : std::string(bytes, static_cast<std::size_t>(sqlite3_column_bytes(row, column)));
   }
 
+  /// Error with the reason of SQLite, or that the work had no end.
   Result<void> fault(ErrorCode code) const {
     const std::string why = has_ended_ ? "too much work to read it" : sqlite3_errmsg(database_.get());
     return fail(code, fmt::format("{}: got a bag that cannot be read: {}, expected a database of rosbag2",
                                   file_, printable(why)));
   }
 
+  /// Opens the database without trust in its schema.
   Result<void> open() {
     sqlite3* raw = nullptr;
     const int opened =
@@ -146,7 +153,7 @@ class Bag {
     database_.reset(raw);
     if (opened != SQLITE_OK) return fault(ErrorCode::kIo);
     sqlite3_limit(raw, SQLITE_LIMIT_LENGTH, kMostBytes);
-    sqlite3_limit(raw, SQLITE_LIMIT_VDBE_OP, 10'000);
+    sqlite3_limit(raw, SQLITE_LIMIT_VDBE_OP, kMostOperations);
     sqlite3_db_config(raw, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
     sqlite3_db_config(raw, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     sqlite3_db_config(raw, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
@@ -155,6 +162,7 @@ class Bag {
     return {};
   }
 
+  /// Callback of SQLite: not 0 ends the query.
   static int ends(void* self) {
     Bag& bag = *static_cast<Bag*>(self);
     bag.steps_ += kStepsBetween;
@@ -162,6 +170,7 @@ class Bag {
     return bag.has_ended_ ? 1 : 0;
   }
 
+  /// Calls `visit` for each row of a query.
   template <class Visit>
   Result<void> each(const char* query, const Visit& visit) {
     sqlite3_stmt* raw = nullptr;
@@ -175,8 +184,8 @@ class Bag {
 
   std::string file_;
   Database database_{nullptr, &sqlite3_close};
-  long long steps_ = 0;
-  bool has_ended_ = false;
+  long long steps_ = 0;     ///< steps of SQLite's machine so far
+  bool has_ended_ = false;  ///< kMostSteps was exceeded
 };
 
 }  // namespace

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Readers of logs by format: CSV, MCAP and SQLite. They yield samples and commands as the file has them.
 #pragma once
 
 #include <cstdint>
@@ -14,36 +15,37 @@
 
 namespace chicane::identify {
 
-/// Samples and commands of a whole file in any order, as one reader of a format found them.
+/// Samples and commands of a whole file, in any order of time.
 struct LogRows {
   std::vector<Sample> samples;
   std::vector<SentCommand> commands;
-  bool is_centre_of_mass = false;
+  bool is_centre_of_mass = false;  ///< as in DriveLog
 };
 
-/// A CSV file with a header. kParse with `file:line: column: got X, expected Y`.
+/// Reads the text of a CSV file. kParse with `file:line: column: got X, expected Y`.
 [[nodiscard]] Result<LogRows> read_csv_rows(const std::string& text, const std::string& file,
                                             const LogOptions& options);
-/// An MCAP file: of ours, or with messages of ROS 2 in CDR.
+/// Reads an MCAP file: a recording of this program, or messages of ROS 2 in CDR.
 [[nodiscard]] Result<LogRows> read_mcap_rows(const std::string& file, const LogOptions& options);
-/// A bag of rosbag2 in SQLite (`.db3`), with messages in CDR. Messages over 16 MiB are refused.
+/// Reads a bag of rosbag2 in SQLite (`.db3`) with messages in CDR. Refuses messages over 16 MiB.
 [[nodiscard]] Result<LogRows> read_sqlite_rows(const std::string& file, const LogOptions& options);
 
-/// Collects the odometry and the commands of a bag, whatever holds it, by topic.
+/// Odometry and commands of a bag of any format, by topic.
 class RosRows {
  public:
-  /// A message in CDR; others than odometry and commands are left out, broken ones too.
+  /// Adds a message in CDR. Leaves out broken messages, and types other than odometry and commands.
+  /// `log_time`: time of recording [ns].
   void add(const std::string& topic, std::string_view type, std::string_view bytes, std::uint64_t log_time);
   /// Rows of the selected topics. kParse if there are none or several.
   [[nodiscard]] Result<LogRows> rows(const std::string& file, const LogOptions& options) const;
 
  private:
-  /// [s] after the first message; a message without a stamp counts when it was logged.
+  /// Time since the first message [s]; `stamp`: of the message [ns], 0: none, its `log_time` counts.
   [[nodiscard]] double seconds(std::int64_t stamp, std::uint64_t log_time);
 
-  std::map<std::string, std::vector<Sample>> samples_;  ///< samples by topic
-  std::map<std::string, std::vector<SentCommand>> commands_;
-  std::optional<std::int64_t> first_;
+  std::map<std::string, std::vector<Sample>> samples_;        ///< samples by topic
+  std::map<std::string, std::vector<SentCommand>> commands_;  ///< commands by topic
+  std::optional<std::int64_t> first_;                         ///< time of the first message [ns]
 };
 
 }  // namespace chicane::identify

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Least-squares fit of all windows of a log at once: the start of each window is eliminated from the common
-// numbers. Deviations by the jackknife (docs/identification.md).
+// Least-squares fit of all windows of the logs at once: the start of each window is eliminated from the
+// common numbers. Deviations by correlation and jackknife (docs/identification.md).
 #include "chicane/identify/detail/window_fit.hpp"
 
 #include <Eigen/Dense>
@@ -11,14 +11,16 @@ namespace chicane::identify {
 namespace {
 
 constexpr int kStartSize = 6;           // numbers of a Start
-constexpr double kHuber = 2.5;          // deviations from which on a residual counts linearly
-constexpr double kSideslipSpeed = 1.0;  // [m/s] standard deviation of v_y at a start
-constexpr Start kStartStep{1e-4, 1e-4, 1e-5, 1e-4, 1e-4, 1e-5};  // steps of derivatives, units of Start
+constexpr double kHuber = 2.5;          // deviations from which on a residual counts linearly; chosen
+constexpr double kSideslipSpeed = 1.0;  // [m/s] prior deviation of v_y at a start; chosen
+constexpr int kFirstSteps = 5;          // steps that fit a start alone; chosen
+constexpr Start kStartStep{1e-4, 1e-4, 1e-5, 1e-4, 1e-4, 1e-5};  // differences of derivatives, units of Start
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Residuals of a window that begins at `start`, over their deviations: samples, then the prior of the start.
+/// Residuals of a window that begins at `start`, over their deviations: five of each sample, then the prior
+/// of v_y.
 void residuals(const Car& car, const DriveLog& log, const Actuators& actuators, const Window& window,
                const Start& start, const Noise& noise, VectorXd& r) {
   std::vector<Expected> expected;
@@ -37,6 +39,7 @@ void residuals(const Car& car, const DriveLog& log, const Actuators& actuators, 
   r[5 * count] = start[4] / kSideslipSpeed;
 }
 
+/// Huber's loss of residuals.
 double loss(const VectorXd& r) {
   double sum = 0.0;
   for (const double each : r) {
@@ -46,21 +49,23 @@ double loss(const VectorXd& r) {
   return sum;
 }
 
-/// Weights that make least squares of Huber's loss.
+/// Roots of the weights with which least squares have the slope of Huber's loss.
 VectorXd roots_of_weights(const VectorXd& r) {
   return r.unaryExpr(
       [](double each) { return std::fabs(each) <= kHuber ? 1.0 : std::sqrt(kHuber / std::fabs(each)); });
 }
 
-/// A window's derivatives, its start eliminated (eq. 9).
+/// Linearised window with its start eliminated (eq. 9): residuals rest + by_theta Δθ that no start can
+/// explain, and the start that follows from θ, start_matrix Δstart = −(start_rest + start_theta Δθ).
 struct Eliminated {
-  MatrixXd by_theta;  ///< slopes of the part that the start cannot explain
+  MatrixXd by_theta;
   VectorXd rest;
-  MatrixXd start_matrix;  ///< triangular
+  MatrixXd start_matrix;  ///< upper triangular
   MatrixXd start_theta;
   VectorXd start_rest;
 };
 
+/// Eliminates the start from residuals `r` with the given derivatives, by QR.
 Eliminated eliminate(const MatrixXd& by_start, const MatrixXd& by_theta, const VectorXd& r) {
   const Eigen::HouseholderQR<MatrixXd> qr(by_start);
   MatrixXd all(r.size(), by_theta.cols() + 1);
@@ -77,11 +82,13 @@ Eliminated eliminate(const MatrixXd& by_start, const MatrixXd& by_theta, const V
   return e;
 }
 
+/// Start, moved by a step.
 Start moved(Start start, const VectorXd& by) {
   for (int i = 0; i < kStartSize; ++i) start[static_cast<std::size_t>(i)] += by[i];
   return start;
 }
 
+/// Derivatives of the residuals `r` of a window by its start, by one-sided differences.
 MatrixXd derivatives_by_start(const Car& car, const DriveLog& log, const Actuators& actuators,
                               const Window& window, const Noise& noise, const VectorXd& r) {
   MatrixXd j(r.size(), kStartSize);
@@ -95,7 +102,7 @@ MatrixXd derivatives_by_start(const Car& car, const DriveLog& log, const Actuato
   return j;
 }
 
-/// The loss of a window that begins at `start`; infinite where the car is lost.
+/// Loss of a window that begins at `start`; infinite if the prediction is not finite.
 double loss_from(const DriveLog& log, const Window& window, const Car& car, const Actuators& actuators,
                  const Noise& noise, const Start& start) {
   VectorXd r;
@@ -104,7 +111,7 @@ double loss_from(const DriveLog& log, const Window& window, const Car& car, cons
   return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
 }
 
-/// Moves the start by the share of `step` that explains the window best. Returns the loss there.
+/// Moves the start of a window by the share of `step` with the least loss, and returns that loss.
 double move_start(const DriveLog& log, Window& window, const Car& car, const Actuators& actuators,
                   const Noise& noise, const VectorXd& step) {
   double best = std::numeric_limits<double>::infinity();
@@ -123,7 +130,7 @@ double move_start(const DriveLog& log, Window& window, const Car& car, const Act
   return best;
 }
 
-/// Improves the start alone by `steps` of Gauss and Newton. Returns the loss.
+/// Improves the start of a window alone by `steps` of Gauss and Newton, and returns the loss.
 double improve_start(const DriveLog& log, Window& window, const Car& car, const Actuators& actuators,
                      const Noise& noise, int steps) {
   VectorXd r;
@@ -138,12 +145,13 @@ double improve_start(const DriveLog& log, Window& window, const Car& car, const 
   return now;
 }
 
+/// Numbers as a vector of Eigen, and back.
 Eigen::Map<const VectorXd> mapped(const std::vector<double>& values) {
   return {values.data(), static_cast<Eigen::Index>(values.size())};
 }
 std::vector<double> listed(const VectorXd& values) { return {values.begin(), values.end()}; }
 
-/// The prior as vectors.
+/// Prior with vectors of Eigen.
 struct Expectation {
   explicit Expectation(const Prior& prior)
       : mean{mapped(prior.mean)}, deviation{mapped(prior.deviation)}, of{prior.car} {}
@@ -152,25 +160,27 @@ struct Expectation {
   const std::function<Car(const std::vector<double>&)>& of;
 };
 
+/// Loss of the numbers by the prior.
 double loss_of_prior(const Expectation& prior, const VectorXd& theta) {
   return 0.5 * (theta - prior.mean).cwiseQuotient(prior.deviation).squaredNorm();
 }
 
-/// All windows linearised at one theta: information on theta, and the slopes of their starts.
+/// Prior and all windows, linearised at one theta.
 struct Linearised {
-  MatrixXd information;
-  VectorXd slope;
-  std::vector<MatrixXd> informations;  ///< information matrix of each window
-  std::vector<VectorXd> slopes;
-  std::vector<Eliminated> windows;
+  MatrixXd information;                ///< Gauss–Newton matrix of theta: prior and all windows
+  VectorXd slope;                      ///< gradient of the loss by theta
+  std::vector<MatrixXd> informations;  ///< part of each window in `information`
+  std::vector<VectorXd> slopes;        ///< part of each window in `slope`
+  std::vector<Eliminated> windows;     ///< for the starts; without by_theta
 };
 
+/// Linearises at `theta`, by one-sided differences.
 Linearised linearise(const std::vector<DriveLog>& logs, const std::vector<Window>& windows,
                      const Expectation& prior, const VectorXd& theta, const Noise& noise) {
   const Eigen::Index p = theta.size();
   const VectorXd weight = prior.deviation.cwiseAbs2().cwiseInverse();
   Linearised now{weight.asDiagonal(), weight.cwiseProduct(theta - prior.mean), {}, {}, {}};
-  struct Side {
+  struct Side {  // car at a point of the differences, and its actuators under each log
     Car car;
     std::vector<Actuators> actuators;
   };
@@ -210,7 +220,7 @@ Linearised linearise(const std::vector<DriveLog>& logs, const std::vector<Window
   return now;
 }
 
-/// Covariance of the numbers when one window of the log is left out at a time (eq. 11).
+/// Covariance of the numbers by the jackknife, which leaves out one window at a time (eq. 11).
 MatrixXd jackknife(const Linearised& at) {
   const Eigen::Index p = at.slope.size();
   std::vector<VectorXd> moved;
@@ -223,15 +233,16 @@ MatrixXd jackknife(const Linearised& at) {
   mean /= windows;
   MatrixXd covariance = MatrixXd::Zero(p, p);
   for (const VectorXd& each : moved) covariance += (each - mean) * (each - mean).transpose();
-  // Student's quantile in place of 2: few windows estimate their own variance badly.
+  // Student's quantile, approximated, in place of 2: few windows estimate their own variance badly.
   const double quantile = 1.96 + 2.37 / std::max(1.0, windows - 1.0);
   return 0.25 * quantile * quantile * (windows - 1.0) / windows * covariance;
 }
 
-/// Loss of information by correlation of the residuals: 1 + 2 Σ (1 − l/(L + 1)) ρ_l up to a second apart (eq.
-/// 10), at least 1; the largest over place, yaw and speed.
+/// Number of samples for each independent one, by the autocorrelation of the residuals: 1 + 2 Σ (1 − l/(L +
+/// 1)) ρ_l up to a second apart (eq. 10), at least 1; the largest over position, yaw and speed.
 class Correlation {
  public:
+  /// Adds the residuals of a window.
   void add(const DriveLog& log, const Window& window, const VectorXd& r) {
     const auto count = static_cast<Eigen::Index>(window.last - window.first);
     const double span = log.samples[window.last - 1].time - log.samples[window.first].time;
@@ -257,77 +268,19 @@ class Correlation {
     return largest;
   }
 
+  /// Limit of samples in a second.
  private:
-  static constexpr Eigen::Index kMost = 100;  ///< limit of samples in a second
-  static constexpr Eigen::Index kKinds = 4;   ///< kinds of residuals: yaw rate follows from yaw
-  MatrixXd sums_ = MatrixXd::Zero(kMost + 1, kKinds);
-  Eigen::Index reach_ = 0;
+  static constexpr Eigen::Index kMost = 100;
+  static constexpr Eigen::Index kKinds = 4;            ///< kinds of residuals: yaw rate follows from yaw
+  MatrixXd sums_ = MatrixXd::Zero(kMost + 1, kKinds);  ///< products of residuals by lag and kind
+  Eigen::Index reach_ = 0;                             ///< L: samples in a second
 };
 
-}  // namespace
-
-std::vector<Actuators> actuators_of(const std::vector<DriveLog>& logs, const Car& car) {
-  std::vector<Actuators> all;
-  all.reserve(logs.size());
-  for (const DriveLog& log : logs) all.emplace_back(log, car);
-  return all;
-}
-
-WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& windows,
-                      const Prior& of_numbers, const std::vector<double>& from, const Noise& noise,
-                      double accuracy, const std::function<bool()>& go_on) {
-  constexpr int kMostIterations = 40;  // limit of trial steps (Levenberg and Marquardt)
-  const Expectation prior(of_numbers);
-  VectorXd theta = mapped(from);
-  WindowFit fit;
-  double lambda = 1e-3;
-  double now = loss_of_prior(prior, theta);
-  {
-    const Car car = prior.car(theta);
-    const std::vector<Actuators> actuators = actuators_of(logs, car);
-    for (Window& window : windows)
-      now += improve_start(logs[window.log], window, car, actuators[window.log], noise, 5);
-  }
-  Linearised at = linearise(logs, windows, prior, theta, noise);
-  for (; fit.iterations < kMostIterations && go_on(); ++fit.iterations) {
-    MatrixXd damped = at.information;
-    damped.diagonal() *= 1.0 + lambda;
-    const VectorXd step = -damped.ldlt().solve(at.slope);
-    std::vector<Window> tried = windows;
-    const Car car = prior.car(theta + step);
-    const std::vector<Actuators> actuators = actuators_of(logs, car);
-    double then = loss_of_prior(prior, theta + step);
-    for (std::size_t w = 0; w < windows.size() && then < now; ++w) {
-      const Eliminated& e = at.windows[w];
-      Window& window = tried[w];
-      move_start(logs[window.log], window, car, actuators[window.log], noise,
-                 -e.start_matrix.triangularView<Eigen::Upper>().solve(e.start_rest + e.start_theta * step));
-      // The starts follow along a bent valley.
-      then += improve_start(logs[window.log], window, car, actuators[window.log], noise, 1);
-    }
-    if (!(then < now)) {
-      lambda *= 10.0;
-      if (lambda > 1e8) break;
-      continue;
-    }
-    const bool is_done = step.cwiseQuotient(prior.deviation).cwiseAbs().maxCoeff() < accuracy &&
-                         now - then < 1e-2 * accuracy * (1.0 + now);
-    theta += step;
-    windows = std::move(tried);
-    now = then;
-    lambda = std::max(0.1 * lambda, 1e-9);
-    at = linearise(logs, windows, prior, theta, noise);
-    if (is_done) break;
-  }
-  const MatrixXd inverse = at.information.ldlt().solve(MatrixXd::Identity(theta.size(), theta.size()));
-  const VectorXd weight = prior.deviation.cwiseAbs2().cwiseInverse();
-  fit.theta = listed(theta);
-  fit.loss = now;
-  const VectorXd root = inverse.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const MatrixXd correlation = root.asDiagonal() * inverse * root.asDiagonal();
-  for (const auto& row : correlation.rowwise()) fit.correlations.emplace_back(row.begin(), row.end());
-  // Residuals of the fit by kind.
-  const Car car = prior.car(theta);
+/// Adds the standard deviations of the residuals by kind, and their correlation.
+void add_residuals(const std::vector<DriveLog>& logs, const std::vector<Window>& windows, const Car& car,
+                   const Noise& noise, WindowFit& fit) {
+  // Standard deviation over median size, of normally distributed residuals.
+  constexpr double kPerMedian = 1.4826;
   const std::vector<Actuators> actuators = actuators_of(logs, car);
   std::array<std::vector<double>, 5> sizes;
   VectorXd r;
@@ -343,15 +296,87 @@ WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& wi
     if (sizes[kind].empty()) continue;
     const auto middle = sizes[kind].begin() + static_cast<std::ptrdiff_t>(sizes[kind].size() / 2);
     std::nth_element(sizes[kind].begin(), middle, sizes[kind].end());
-    fit.residual[kind] = 1.4826 * *middle;  // standard deviation from the median, if normally distributed
+    fit.residual[kind] = kPerMedian * *middle;
   }
-  // Correlated samples count as fewer independent ones; the prior keeps its certainty.
   fit.correlation = correlated.factor();
+}
+
+/// Adds correlations and standard deviations of the numbers. Correlated samples count as fewer independent
+/// ones; the prior keeps its certainty.
+void add_deviations(const Linearised& at, const Expectation& prior, WindowFit& fit) {
+  const Eigen::Index p = at.slope.size();
+  const MatrixXd inverse = at.information.ldlt().solve(MatrixXd::Identity(p, p));
+  const VectorXd root = inverse.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const MatrixXd correlation = root.asDiagonal() * inverse * root.asDiagonal();
+  for (const auto& row : correlation.rowwise()) fit.correlations.emplace_back(row.begin(), row.end());
+  const VectorXd weight = prior.deviation.cwiseAbs2().cwiseInverse();
   const MatrixXd prior_alone = inverse * weight.asDiagonal() * inverse;
   const VectorXd plain = fit.correlation * (inverse - prior_alone).diagonal() + prior_alone.diagonal();
   const VectorXd left_out = (jackknife(at) + prior_alone).diagonal();
   fit.deviation =
       listed(plain.cwiseMax(left_out).cwiseMin(prior.deviation.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt());
+}
+
+}  // namespace
+
+std::vector<Actuators> actuators_of(const std::vector<DriveLog>& logs, const Car& car) {
+  std::vector<Actuators> all;
+  all.reserve(logs.size());
+  for (const DriveLog& log : logs) all.emplace_back(log, car);
+  return all;
+}
+
+WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& windows,
+                      const Prior& of_numbers, const std::vector<double>& from, const Noise& noise,
+                      double accuracy, const std::function<bool()>& go_on) {
+  constexpr int kMostIterations = 40;                         // limit of trial steps; chosen
+  constexpr double kFirstDamping = 1e-3, kMostDamping = 1e8;  // Levenberg and Marquardt's λ; chosen
+  const Expectation prior(of_numbers);
+  VectorXd theta = mapped(from);
+  WindowFit fit;
+  double lambda = kFirstDamping;
+  double now = loss_of_prior(prior, theta);
+  {
+    const Car car = prior.car(theta);
+    const std::vector<Actuators> actuators = actuators_of(logs, car);
+    for (Window& window : windows)
+      now += improve_start(logs[window.log], window, car, actuators[window.log], noise, kFirstSteps);
+  }
+  Linearised at = linearise(logs, windows, prior, theta, noise);
+  for (; fit.iterations < kMostIterations && go_on(); ++fit.iterations) {
+    MatrixXd damped = at.information;
+    damped.diagonal() *= 1.0 + lambda;
+    const VectorXd step = -damped.ldlt().solve(at.slope);
+    std::vector<Window> tried = windows;
+    const Car car = prior.car(theta + step);
+    const std::vector<Actuators> actuators = actuators_of(logs, car);
+    double then = loss_of_prior(prior, theta + step);
+    for (std::size_t w = 0; w < windows.size() && then < now; ++w) {
+      const Eliminated& e = at.windows[w];
+      Window& window = tried[w];
+      move_start(logs[window.log], window, car, actuators[window.log], noise,
+                 -e.start_matrix.triangularView<Eigen::Upper>().solve(e.start_rest + e.start_theta * step));
+      // The eliminated start is linear in theta: one step corrects it.
+      then += improve_start(logs[window.log], window, car, actuators[window.log], noise, 1);
+    }
+    if (!(then < now)) {
+      lambda *= 10.0;
+      if (lambda > kMostDamping) break;
+      continue;
+    }
+    const bool is_done = step.cwiseQuotient(prior.deviation).cwiseAbs().maxCoeff() < accuracy &&
+                         now - then < 1e-2 * accuracy * (1.0 + now);
+    theta += step;
+    windows = std::move(tried);
+    now = then;
+    lambda = std::max(0.1 * lambda, 1e-9);
+    at = linearise(logs, windows, prior, theta, noise);
+    if (is_done) break;
+  }
+  fit.theta = listed(theta);
+  fit.loss = now;
+  add_residuals(logs, windows, prior.car(theta), noise, fit);
+  add_deviations(at, prior, fit);
   return fit;
 }
 
@@ -359,7 +384,7 @@ void fit_start(const std::vector<DriveLog>& logs, Window& window, std::size_t fi
                const Actuators& actuators, const Noise& noise) {
   Window seen = window;
   seen.last = fitted;
-  improve_start(logs[window.log], seen, car, actuators, noise, 5);
+  improve_start(logs[window.log], seen, car, actuators, noise, kFirstSteps);
   window.start = seen.start;
 }
 

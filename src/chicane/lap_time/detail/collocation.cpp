@@ -15,25 +15,29 @@ namespace {
 
 using std::size_t;
 
+// Chosen, as usual for the method (Wächter, Biegler 2006).
 constexpr double kLeastSlack = 1e-2;       // smallest slack at the start
 constexpr double kToBoundary = 0.99;       // share of the way to a slack of zero, at least
 constexpr double kEquationShift = 1e-9;    // keeps dependent equations solvable
 constexpr double kFirstShift = 1e-4;       // first shift of the Hessian, if its curvature is wrong
-constexpr double kMostShift = 1e10;        // the search fails beyond this shift
+constexpr double kMostShift = 1e10;        // largest shift: beyond it the search fails
 constexpr double kBarrierFall = 0.2;       // next barrier over this one, at most
-constexpr double kBarrierError = 10.0;     // a barrier problem is solved well enough below this times μ
-constexpr double kMultiplierRange = 1e10;  // keeps ν near μ / s
-constexpr double kBarrierShare = 1e-2;     // share of the tolerance: a smaller barrier may end the search
+constexpr double kBarrierError = 10.0;     // error over μ at which a barrier problem counts as solved
+constexpr double kMultiplierRange = 1e10;  // largest factor between ν and μ / s
+constexpr double kBarrierShare = 1e-2;     // barrier over the tolerance below which the search may end
 constexpr int kHalvings = 12;              // trial steps of a line search
 constexpr double kKick = 0.1;              // share of the step without descent, to leave a stuck point
 
 }  // namespace
 
-/// Variables scaled to about one, slacks of the inequalities, and all multipliers.
+/// Point of the search, or a step: variables scaled to about one, slacks s of the inequalities, and the
+/// multipliers ν of the inequalities, λ of the intervals, η of the nodes' equations.
 struct Collocation::Iterate {
   std::vector<double> w, slack, nu, lambda, eta;
 };
 
+/// One solution of a problem. Names of sizes: n nodes; for each node nz variables, nx states, na equations,
+/// ng inequalities, nm functions and nb unknowns of the linear system.
 class Collocation::Search {
  public:
   Search(const Collocation& problem, const Options& options)
@@ -59,7 +63,7 @@ class Collocation::Search {
     Report report;
     double mu = options_.first_barrier;
     for (; report.iterations <= options_.most_iterations; ++report.iterations) {
-      look();
+      differentiate();
       report.cost = cost() / options_.cost_scale;
       report.barrier = mu;
       measure(0.0);
@@ -79,22 +83,26 @@ class Collocation::Search {
         report.is_solved = true;
         break;
       }
+      // Lower the barrier as long as its problem is solved, then make a step.
       bool has_fallen = false;
       while (measure(mu), error() <= kBarrierError * mu && mu > options_.last_barrier) {
         mu = std::max(options_.last_barrier, std::min(kBarrierFall * mu, mu * std::sqrt(mu)));
         has_fallen = true;
       }
       if (has_fallen) filter_.clear();
-      if (!std::isfinite(error()) || !direction(mu) || !step(mu)) break;
+      if (!std::isfinite(error()) || !direction(mu)) break;
+      step(mu);
     }
     write(z);
     return report;
   }
 
  private:
+  /// Copies the variables to z, unscaled.
   void write(std::vector<double>& z) const {
     for (size_t i = 0; i < z.size(); ++i) z[i] = now_.w[i] * f_.scale[i % nz_];
   }
+  /// Starts at the variables z, with slacks and multipliers near the first barrier's.
   void begin(const std::vector<double>& z) {
     now_.w.resize(z.size());
     for (size_t i = 0; i < z.size(); ++i) now_.w[i] = z[i] / f_.scale[i % nz_];
@@ -121,20 +129,23 @@ class Collocation::Search {
     return 0.5 * (steps_[k] + steps_[before(k)]) * options_.cost_scale;
   }
 
-  void unscaled(const std::vector<double>& w, size_t k) {
+  /// Sets z_ to the variables of node k, unscaled.
+  void unscale(const std::vector<double>& w, size_t k) {
     z_.resize(nz_);
     for (size_t i = 0; i < nz_; ++i) z_[i] = w[k * nz_ + i] * f_.scale[i];
   }
+  /// Values of all functions at w, with scaled rates.
   void evaluate(const std::vector<double>& w, std::vector<double>& out) {
     for (size_t k = 0; k < n_; ++k) {
-      unscaled(w, k);
+      unscale(w, k);
       f_.values(static_cast<int>(k), z_.data(), out.data() + k * nm_);
       for (size_t i = 0; i < nx_; ++i) out[k * nm_ + i] /= f_.scale[i];
     }
   }
 
-  /// λ_k belongs to the interval that ends at node k.
-  void look() {
+  /// Values, Jacobians and Hessians of the Lagrangian at the present point. λ_k belongs to the interval that
+  /// ends at node k.
+  void differentiate() {
     std::vector<double> weights(nm_);
     for (size_t k = 0; k < n_; ++k) {
       const size_t next = after(k);
@@ -145,7 +156,7 @@ class Collocation::Search {
       for (size_t i = 0; i < na_; ++i) weights[nx_ + i] = now_.eta[k * na_ + i];
       weights[nx_ + na_] = share(k);
       for (size_t j = 0; j < ng_; ++j) weights[nx_ + na_ + 1 + j] = -now_.nu[k * ng_ + j];
-      unscaled(now_.w, k);
+      unscale(now_.w, k);
       double* jacobian = jacobian_.data() + k * nm_ * nz_;
       double* hessian = hessian_.data() + k * nz_ * (nz_ + 1) / 2;
       f_.derivatives(static_cast<int>(k), z_.data(), weights.data(), out_.data() + k * nm_, jacobian,
@@ -171,6 +182,7 @@ class Collocation::Search {
     }
   }
 
+  /// Sum of the nodes' costs.
   [[nodiscard]] double cost(const std::vector<double>& out) const {
     double sum = 0.0;
     for (size_t k = 0; k < n_; ++k) sum += share(k) * out[k * nm_ + nx_ + na_];
@@ -178,18 +190,20 @@ class Collocation::Search {
   }
   [[nodiscard]] double cost() const { return cost(out_); }
 
+  /// Row of the Jacobian of node k for its function m.
   [[nodiscard]] const double* slope(size_t k, size_t m) const { return &jacobian_[(k * nm_ + m) * nz_]; }
-  /// ∂(interval ending at k)/∂z_k, and ∂(interval beginning at k)/∂z_k.
+  /// Derivative of the i-th defect of the interval that ends at node k by the j-th variable of the node.
   [[nodiscard]] double end_slope(size_t k, size_t i, size_t j) const {
     return (i == j ? 1.0 : 0.0) - 0.5 * steps_[before(k)] * slope(k, i)[j];
   }
+  /// Derivative of the i-th defect of the interval that begins at node k by the j-th variable of the node.
   [[nodiscard]] double begin_slope(size_t k, size_t i, size_t j) const {
     return (i == j ? -1.0 : 0.0) - 0.5 * steps_[k] * slope(k, i)[j];
   }
 
-  /// Residuals of the barrier problem's conditions.
+  /// Residuals of the optimality conditions of the problem with barrier μ.
   void measure(double mu) {
-    double slope_of = 0.0;
+    double most_slope = 0.0;
     double multipliers = 0.0;
     double of_inequalities = 0.0;
     violation_ = complementarity_ = 0.0;
@@ -201,7 +215,7 @@ class Collocation::Search {
                  begin_slope(k, i, j) * now_.lambda[after(k) * nx_ + i];
         for (size_t i = 0; i < na_; ++i) sum += slope(k, nx_ + i)[j] * now_.eta[k * na_ + i];
         for (size_t i = 0; i < ng_; ++i) sum -= slope(k, nx_ + na_ + 1 + i)[j] * now_.nu[k * ng_ + i];
-        slope_of = std::max(slope_of, std::fabs(sum));
+        most_slope = std::max(most_slope, std::fabs(sum));
       }
       for (size_t j = 0; j < ng_; ++j) {
         const double s = now_.slack[k * ng_ + j];
@@ -216,11 +230,13 @@ class Collocation::Search {
     const double inequalities = static_cast<double>(n_ * ng_);
     const double all = inequalities + static_cast<double>(n_ * (nx_ + na_));
     constexpr double kLarge = 100.0;  // mean multiplier above which errors are scaled
-    stationarity_ = slope_of / (std::max(kLarge, (multipliers + of_inequalities) / all) / kLarge);
+    stationarity_ = most_slope / (std::max(kLarge, (multipliers + of_inequalities) / all) / kLarge);
     complementarity_ /= std::max(kLarge, of_inequalities / inequalities) / kLarge;
   }
   [[nodiscard]] double error() const { return std::max({stationarity_, violation_, complementarity_}); }
 
+  /// Fills matrix and right-hand side of the Newton step, with slacks and ν eliminated and `shift` added to
+  /// the diagonal of the Hessian.
   void fill(double mu, double shift) {
     right_.assign(n_ * nb_, 0.0);
     for (size_t k = 0; k < n_; ++k) {
@@ -258,7 +274,8 @@ class Collocation::Search {
     }
   }
 
-  /// The Newton step of the barrier problem, with a Hessian shifted until its curvature is right.
+  /// Finds the Newton step of the barrier problem, with the Hessian shifted until its curvature is right.
+  /// False if no shift suffices.
   bool direction(double mu) {
     double shift = 0.0;
     for (fill(mu, shift); !system_.factor(); fill(mu, shift)) {
@@ -285,10 +302,12 @@ class Collocation::Search {
     return true;
   }
 
+  /// Cost with barrier terms, and sum of violations: the two measures of the filter.
   struct Point {
     double cost = 0.0, violation = 0.0;
   };
-  [[nodiscard]] Point weigh(const std::vector<double>& w, const std::vector<double>& slack, double mu,
+  /// The measures of a point whose functions have the values `out`.
+  [[nodiscard]] Point merit(const std::vector<double>& w, const std::vector<double>& slack, double mu,
                             const std::vector<double>& out) const {
     std::vector<double> gap(gap_.size());
     gaps(w, out, gap);
@@ -303,6 +322,7 @@ class Collocation::Search {
     return p;
   }
 
+  /// Slope of Point::cost along the step.
   [[nodiscard]] double cost_slope(double mu) const {
     double sum = 0.0;
     for (size_t k = 0; k < n_; ++k)
@@ -311,8 +331,8 @@ class Collocation::Search {
     return sum;
   }
 
-  /// Goes along the direction as far as the filter allows.
-  bool step(double mu) {
+  /// Moves along the Newton step as far as slacks and filter permit.
+  void step(double mu) {
     const double keep = std::max(kToBoundary, 1.0 - mu);
     double primal = 1.0;
     double dual = 1.0;
@@ -320,7 +340,7 @@ class Collocation::Search {
       if (move_.slack[i] < 0.0) primal = std::min(primal, -keep * now_.slack[i] / move_.slack[i]);
       if (move_.nu[i] < 0.0) dual = std::min(dual, -keep * now_.nu[i] / move_.nu[i]);
     }
-    const Point here = weigh(now_.w, now_.slack, mu, out_);
+    const Point here = merit(now_.w, now_.slack, mu, out_);
     const double descent = cost_slope(mu);
     std::vector<double> w(now_.w.size());
     std::vector<double> slack(now_.slack.size());
@@ -330,18 +350,15 @@ class Collocation::Search {
       for (size_t j = 0; j < w.size(); ++j) w[j] = now_.w[j] + length * move_.w[j];
       for (size_t j = 0; j < slack.size(); ++j) slack[j] = now_.slack[j] + length * move_.slack[j];
       evaluate(w, out);
-      const Point there = weigh(w, slack, mu, out);
-      if (accepts(here, there, length * descent)) {
-        take(length, dual, mu);
-        return true;
-      }
+      const Point there = merit(w, slack, mu, out);
+      if (accepts(here, there, length * descent)) return move(length, dual, mu);
     }
-    // The filter accepts no point along this direction: clear it, and leave the place by a short step.
+    // The filter accepts no point along this step: clear it, and leave the point by a short step.
     filter_.clear();
-    take(kKick * primal, dual, mu);
-    return true;
+    move(kKick * primal, dual, mu);
   }
 
+  /// Whether the filter accepts a step between two points; `descent`: predicted change of the cost.
   [[nodiscard]] bool accepts(const Point& here, const Point& there, double descent) {
     constexpr double kShare = 1e-5;   // margin of the filter, over the violation
     constexpr double kArmijo = 1e-4;  // least share of the predicted descent
@@ -358,7 +375,8 @@ class Collocation::Search {
     return is_better;
   }
 
-  void take(double primal, double dual, double mu) {
+  /// Moves by shares of the step: primal for variables, slacks, λ and η, dual for ν.
+  void move(double primal, double dual, double mu) {
     for (size_t i = 0; i < now_.w.size(); ++i) now_.w[i] += primal * move_.w[i];
     for (size_t i = 0; i < now_.lambda.size(); ++i) now_.lambda[i] += primal * move_.lambda[i];
     for (size_t i = 0; i < now_.eta.size(); ++i) now_.eta[i] += primal * move_.eta[i];
@@ -376,10 +394,13 @@ class Collocation::Search {
   const Options& options_;
   size_t n_, nz_, nx_, na_, ng_, nm_, nb_;
   CyclicSystem system_;
-  std::vector<double> out_, jacobian_, hessian_, gap_, right_, z_;
-  Iterate now_, move_;
-  std::vector<Point> filter_;
-  double stationarity_ = 0.0, violation_ = 0.0, complementarity_ = 0.0, last_shift_ = 0.0;
+  std::vector<double> out_, jacobian_, hessian_;  ///< functions of all nodes, and their derivatives
+  std::vector<double> gap_;                       ///< gaps()
+  std::vector<double> right_, z_;                 ///< right-hand side, variables of a node
+  Iterate now_, move_;                            ///< present point, and the Newton step from it
+  std::vector<Point> filter_;                     ///< points that later ones must improve on
+  double stationarity_ = 0.0, violation_ = 0.0, complementarity_ = 0.0;  ///< residuals of measure()
+  double last_shift_ = 0.0;  ///< last shift of the Hessian that was needed
 };
 
 Collocation::Collocation(const NodeFunctions& functions, std::vector<double> steps,

@@ -4,23 +4,24 @@
 #include <functional>
 #include <vector>
 
+/// Optimal control problem over a closed road, made discrete by collocation, and its solution.
+
 namespace chicane::lap_time {
 
 /// Functions of the variables z of one node, in this order: rates of its states by arc length, equations (=
 /// 0), cost by arc length, inequalities (>= 0). The first `states` of z are the states.
 class NodeFunctions {
  public:
-  int variables = 0;
-  int states = 0;
-  int equations = 0;
-  int inequalities = 0;
-  std::vector<double> scale{};  ///< typical size of each variable
+  int variables = 0, states = 0, equations = 0, inequalities = 0;  ///< their numbers
+  std::vector<double> scale{};                                     ///< typical size of each variable
 
   NodeFunctions() = default;
   NodeFunctions(const NodeFunctions&) = default;
   NodeFunctions& operator=(const NodeFunctions&) = default;
   virtual ~NodeFunctions() = default;
+  /// Number of functions.
   [[nodiscard]] int functions() const noexcept { return states + equations + 1 + inequalities; }
+  /// Values of all functions.
   virtual void values(int node, const double* z, double* out) const = 0;
   /// Values, the Jacobian by rows, and the Hessian of the sum weighted by `weights` (lower triangle by rows).
   virtual void derivatives(int node, const double* z, const double* weights, double* out, double* jacobian,
@@ -37,7 +38,7 @@ class Collocation {
     double first_barrier = 0.1;  ///< μ at the start
     double last_barrier = 1e-8;  ///< μ at the end
     double cost_scale = 20.0;    ///< scale at which the cost of a node is about 1
-    int most_iterations = 600;
+    int most_iterations = 600;   ///< limit of iterations
     /// Progress callback: iteration, cost and largest violated equation; false ends the search. May be empty.
     std::function<bool(int, double, double)> go_on{};
     /// Early end: gets the variables and the largest violation before each iteration; true ends the search as
@@ -45,13 +46,13 @@ class Collocation {
     std::function<bool(const std::vector<double>&, double)> is_enough{};
   };
   struct Report {
-    bool is_solved = false;
-    bool is_stopped = false;
+    bool is_solved = false;   ///< an optimum within the tolerance, or Options::is_enough
+    bool is_stopped = false;  ///< Options::go_on ended the search
     int iterations = 0;
-    double cost = 0.0;
+    double cost = 0.0;          ///< sum of the costs
     double stationarity = 0.0;  ///< largest slope of the Lagrangian, scaled
     double violation = 0.0;     ///< largest violated equation or inequality, scaled
-    double barrier = 0.0;
+    double barrier = 0.0;       ///< μ
   };
 
   /// `steps`: length of the interval from node k to the next. `changes`: part of each state's change over the

@@ -9,7 +9,8 @@
 namespace chicane::lap_time {
 namespace {
 
-constexpr double kPivotShare = 0.6403882032022076;  // (1 + √17) / 8
+// Share that decides between pivots of one and two rows: (1 + √17) / 8 bounds the growth (Bunch, Kaufman).
+constexpr double kPivotShare = 0.6403882032022076;
 
 }  // namespace
 
@@ -60,6 +61,7 @@ bool SymmetricBlock::factor(const double* matrix, int n) {
   order_.resize(static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i) order_[static_cast<std::size_t>(i)] = i;
   for (int k = 0; k < n;) {
+    // Choice of the pivot: one row, another row, or two rows.
     const double own = std::fabs(row(k)[k]);
     int far = k;
     double most = 0.0;
@@ -98,22 +100,23 @@ void SymmetricBlock::solve(double* b, int columns) const {
   const auto line = [&](int i) { return work_.data() + static_cast<std::size_t>(i) * width; };
   for (int i = 0; i < n_; ++i)
     std::copy_n(b + static_cast<std::size_t>(order_[static_cast<std::size_t>(i)]) * width, width, line(i));
-  const auto take = [&](double* to, const double* from, double share) {
+  const auto subtract = [&](double* to, const double* from, double share) {
     if (share == 0.0) return;
     for (std::size_t j = 0; j < width; ++j) to[j] -= share * from[j];
   };
+  // Forward substitution, and division by the pivots.
   for (int k = 0; k < n_;) {
     const double b_off = off_[static_cast<std::size_t>(k)];
     if (b_off == 0.0) {
-      for (int i = k + 1; i < n_; ++i) take(line(i), line(k), row(i)[k]);
+      for (int i = k + 1; i < n_; ++i) subtract(line(i), line(k), row(i)[k]);
       const double inverse = 1.0 / row(k)[k];
       for (std::size_t j = 0; j < width; ++j) line(k)[j] *= inverse;
       ++k;
       continue;
     }
     for (int i = k + 2; i < n_; ++i) {
-      take(line(i), line(k), row(i)[k]);
-      take(line(i), line(k + 1), row(i)[k + 1]);
+      subtract(line(i), line(k), row(i)[k]);
+      subtract(line(i), line(k + 1), row(i)[k + 1]);
     }
     const double a = row(k)[k];
     const double c = row(k + 1)[k + 1];
@@ -126,11 +129,12 @@ void SymmetricBlock::solve(double* b, int columns) const {
     }
     k += 2;
   }
+  // Backward substitution.
   for (int k = n_ - 1; k >= 0; --k) {
     const bool is_second = k > 0 && off_[static_cast<std::size_t>(k - 1)] != 0.0;
     for (int i = k + 1; i < n_; ++i) {
-      take(line(k), line(i), row(i)[k]);
-      if (is_second) take(line(k - 1), line(i), row(i)[k - 1]);
+      subtract(line(k), line(i), row(i)[k]);
+      if (is_second) subtract(line(k - 1), line(i), row(i)[k - 1]);
     }
     if (is_second) --k;
   }
@@ -150,8 +154,8 @@ CyclicSystem::CyclicSystem(int nodes, int variables, int states, int equations)
       spread_(index(nodes) * index(nb_) * index(width_)),
       blocks_(index(nodes)) {}
 
-// Couplings of node k when its turn comes: to λ of the next node (node 0 for the last) through B_k, to z of
-// node 0 through a matrix `border` (variables of node 0 × λ_k), which starts as B_0ᵀ and is passed on.
+// When node k is eliminated it is coupled to λ of the next node (node 0 for the last) through B_k, and to z
+// of node 0 through the matrix `border` (variables of node 0 × λ_k), which is B_0ᵀ at first.
 bool CyclicSystem::factor() {
   std::vector<double> first(diagonal(0), diagonal(0) + area());
   std::vector<double> now(area());
@@ -162,12 +166,14 @@ bool CyclicSystem::factor() {
     for (int j = 0; j < nx_; ++j) border[index(i * nx_ + j)] = coupling(0)[j * nz_ + i];
   int negative = 0;
   for (int k = 1; k < n_; ++k) {
+    // The block of node k, with the change by the node before it.
     std::copy_n(diagonal(k), area(), now.begin());
     for (int i = 0; i < nx_; ++i)
       for (int j = 0; j < nx_; ++j) now[index((nz_ + i) * nb_ + nz_ + j)] -= change[index(i * nx_ + j)];
     SymmetricBlock& block = blocks_[index(k)];
     if (!block.factor(now.data(), nb_)) return false;
     negative += block.negative();
+    // Y: the inverse of the block times both couplings.
     double* y = spread_.data() + index(k) * index(nb_) * index(width_);
     std::fill_n(y, index(nb_) * index(width_), 0.0);
     for (int i = 0; i < nz_; ++i)
@@ -175,7 +181,7 @@ bool CyclicSystem::factor() {
     for (int i = 0; i < nx_; ++i)
       for (int j = 0; j < nz_; ++j) y[(nz_ + i) * width_ + nx_ + j] = border[index(j * nx_ + i)];
     block.solve(y, width_);
-    // B_k Y: rows of λ_{k+1}. borderᵀ Y: rows of z_0.
+    // Changes of the remaining rows: those of λ_{k+1} by B_k Y, those of z_0 by borderᵀ Y.
     for (int i = 0; i < nx_; ++i) {
       for (int j = 0; j < nx_; ++j) {
         double sum = 0.0;
@@ -196,6 +202,7 @@ bool CyclicSystem::factor() {
     }
     border.swap(next_border);
   }
+  // The block of node 0, with the changes by all others.
   for (int i = 0; i < nx_; ++i)
     for (int j = 0; j < nx_; ++j) first[index((nz_ + i) * nb_ + nz_ + j)] -= change[index(i * nx_ + j)];
   for (int i = 0; i < nz_; ++i) {
@@ -253,7 +260,7 @@ void CyclicSystem::subtract_product(const std::vector<double>& x, std::vector<do
 }
 
 void CyclicSystem::solve(std::vector<double>& b) const {
-  constexpr int kRefinements = 2;
+  constexpr int kRefinements = 2;  // chosen: the shift of the equations costs digits
   const std::vector<double> wanted = b;
   solve_once(b);
   for (int i = 0; i < kRefinements; ++i) {

@@ -13,15 +13,21 @@ namespace chicane::lap_time {
 namespace {
 
 constexpr double kGravity = 9.81;    // [m/s²]
-constexpr double kNearLimit = 0.96;  // share of the drive
+constexpr double kNearLimit = 0.96;  // used share of the drive from which on it has no reserve; chosen
 
+// Reserves, first guesses, weights and tunings of both plants were chosen: with them the search converges and
+// plans can be driven on the shipped tracks.
+
+/// Functions of a limit model that its equations know.
 template <class Model>
 class WithModel : public PlanModelOf<LimitModel, Model> {
  public:
+  [[nodiscard]] CarSize size() const override { return this->model_.size(); }
   [[nodiscard]] int driven() const override { return Model::kDriven; }
   [[nodiscard]] int input() const override { return Model::kInput; }
 };
 
+/// Limit model of the plant `udacity`.
 class UdacityLimit final : public WithModel<UdacityModel> {
  public:
   explicit UdacityLimit(const sim::PlantDeviation& deviation) {
@@ -30,10 +36,7 @@ class UdacityLimit final : public WithModel<UdacityModel> {
     friction_ = model_.car.friction_scale * deviation.friction_scale;
     set_reserve({});
   }
-  [[nodiscard]] CarSize size() const override {
-    return {model_.car.front_axle, model_.car.rear_axle, model_.car.half_track + model_.car.half_tire,
-            model_.car.steer_limit};
-  }
+
   [[nodiscard]] std::span<const Reserve> reserves() const override {
     static constexpr Reserve kReserves[] = {
         {.margin = 0.02},
@@ -89,7 +92,7 @@ class UdacityLimit final : public WithModel<UdacityModel> {
   [[nodiscard]] bool is_spent(const double*) const override { return false; }
   void start() override {}
   void see(const model::Command&, const sim::PlantOutput&, double) override {}
-  /// The velocity in the middle of the next step: the helper turns it first, drag comes last.
+  /// Uses the velocity in the middle of the next step: the helper turns it first, drag comes last.
   void motion(const model::State& state, double* x) const override {
     const double turn = kSeen * model_.car.steer_helper * sim::UdacityCar::kStepLength * state.r;
     const double mean = 1.0 + 0.5 * model_.car.linear_drag * sim::UdacityCar::kStepLength;
@@ -117,12 +120,13 @@ class UdacityLimit final : public WithModel<UdacityModel> {
   }
 
  private:
-  static constexpr double kSeen = 0.625;      ///< mean over the parts of a step of the remaining turn
-  static constexpr double kMostSlip = 0.19;   ///< [rad]
-  static constexpr double kNearLock = 0.985;  ///< share of the force at which wheels lock
-  double friction_ = 1.0;
+  static constexpr double kSeen = 0.625;  ///< remaining share of the helper's turn, mean over a step's parts
+  static constexpr double kMostSlip = 0.19;   ///< largest front slip: just below the peak at 0.2 [rad]
+  static constexpr double kNearLock = 0.985;  ///< used share of the force at which wheels lock; chosen
+  double friction_ = 1.0;                     ///< friction scale of the plant
 };
 
+/// Limit model of the plants `double-track` and `road-car`.
 class DoubleTrackLimit final : public WithModel<DoubleTrackModel> {
  public:
   DoubleTrackLimit(const sim::DoubleTrackParams& car, const sim::PlantDeviation& deviation) {
@@ -131,10 +135,7 @@ class DoubleTrackLimit final : public WithModel<DoubleTrackModel> {
     model_.car.yaw_inertia *= deviation.mass_scale;
     model_.car.friction *= deviation.friction_scale;
   }
-  [[nodiscard]] CarSize size() const override {
-    return {model_.car.front_axle, model_.car.rear_axle, model_.car.half_track() + model_.car.half_tire(),
-            model_.car.steer_limit};
-  }
+
   [[nodiscard]] std::span<const Reserve> reserves() const override {
     static constexpr Reserve kReserves[] = {{.margin = 0.05, .slip_share = 1.0},
                                             {.margin = 0.06, .slip_share = 0.95},
@@ -143,8 +144,8 @@ class DoubleTrackLimit final : public WithModel<DoubleTrackModel> {
                                             {.margin = 0.2, .grip_share = 0.98, .slip_share = 0.8}};
     return kReserves;
   }
-  /// Caps from the peak on: beyond it a tyre gives less force, and laps of most cars use less than twice its
-  /// slip.
+  /// Caps rise from the peak: beyond it a tyre gives less force, and laps of most cars use less than twice
+  /// the slip of the peak.
   [[nodiscard]] std::span<const double> slip_caps() const override {
     static constexpr double kCaps[] = {1.0, 1.1, 1.25, 1.5, 2.0, 10.0};
     return kCaps;
@@ -244,8 +245,9 @@ class DoubleTrackLimit final : public WithModel<DoubleTrackModel> {
   }
 
  private:
-  static constexpr double kMostSlip = 0.9;  ///< share of the slip at the peak
-  double pedal_ = 0.0, shift_x_ = 0.0, shift_y_ = 0.0;
+  static constexpr double kMostSlip = 0.9;  ///< largest front slip over that of the peak; chosen
+  double pedal_ = 0.0;                      ///< pedal after its lag
+  double shift_x_ = 0.0, shift_y_ = 0.0;    ///< lagged acceleration that shifts load [m/s²]
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Road at the nodes of a plan, first guess of speeds, and the check that a car's lock fits the road.
+// Road at the nodes of a plan, first guess of speeds, and the check that a car's width and lock fit the road.
 #include "chicane/lap_time/detail/plan_model.hpp"
 
 #include <cmath>
@@ -123,12 +123,7 @@ struct BendModel {
     *out++ = z[2] * length;
     *out++ = z[3] * length;
     *out++ = (fourth * fourth + kSmooth * (z[3] * z[3])) * length;
-    const OnRoad<T> on(0.0, z[0], heading, T(1.0), T(0.0));
-    const double w = car.half_width;
-    *out++ = at.front_left[k] - on.offset_of(z[0], car.front_axle, w, at.front_bend[k]);
-    *out++ = at.front_right[k] + on.offset_of(z[0], car.front_axle, -w, at.front_bend[k]);
-    *out++ = at.rear_left[k] - on.offset_of(z[0], -car.rear_axle, w, at.rear_bend[k]);
-    *out++ = at.rear_right[k] + on.offset_of(z[0], -car.rear_axle, -w, at.rear_bend[k]);
+    OnRoad<T>(0.0, z[0], heading, T(1.0), T(0.0)).edge_gaps(at, k, z[0], car, 0.0, out);
   }
 
  private:
@@ -137,10 +132,10 @@ struct BendModel {
 
 constexpr double kPace = 4.0;       // [m/s] speed that chooses the nodes; chosen
 constexpr double kFollowed = 1e-3;  // scaled violation of a line that stays on the road: millimetres
-constexpr int kNarrowings = 3;      // times that the room is halved
+constexpr int kNarrowings = 3;      // times that the room is halved; chosen
 
-/// Whether the car's lock suffices for the straightest line with its centre of mass at most `beside` from the
-/// middle.
+/// Checks that the car's lock suffices for the straightest line with its centre of mass at most `beside` [m]
+/// from the middle. `has_answer` becomes false if the search ended without a line.
 Result<void> bends_fit(RoadNodes road, const CarSize& car, const Fit& fit, double beside, bool& has_answer) {
   for (std::vector<double>* room : {&road.front_left, &road.front_right, &road.rear_left, &road.rear_right}) {
     for (double& each : *room) each = std::min(each, beside + car.half_width);
@@ -177,8 +172,7 @@ Result<void> bends_fit(RoadNodes road, const CarSize& car, const Fit& fit, doubl
   };
   const Collocation::Report report = problem.solve(z, options);
   has_answer = !report.is_stopped && report.violation <= 1e-2;
-  if (!has_answer) return {};  // left to the search itself
-  if (can_be_followed()) return {};
+  if (!has_answer || can_be_followed()) return {};
   return fail(
       ErrorCode::kInvalidArgument,
       message("limit: the bend at s = %.1f m leaves room for a radius of %.2f m, and the car's full lock "
@@ -193,8 +187,6 @@ double CarSize::most_curvature() const noexcept {
   const double rear = chicane::tan(steer_limit) / (front_axle + rear_axle);  // at the rear axle's middle
   return rear / std::sqrt(1.0 + rear_axle * rear_axle * rear * rear);
 }
-
-Result<void> fits_road(const road::Track& track, const CarSize& car) { return fits_road(track, car, Fit{}); }
 
 Result<void> fits_road(const road::Track& track, const CarSize& car, const Fit& fit) {
   const GuessCar pace{.grip = 2.0,
@@ -231,9 +223,9 @@ Result<void> fits_road(const road::Track& track, const CarSize& car, const Fit& 
         message("limit: the loop is %.1f m long, expected more than the car's circle at full lock, %.1f m",
                 fit.scale * track.length(), fit.scale * circle));
 
-  // Start on a narrower road: where the road is wider than its bends are round, the search for the
-  // straightest line can end in a fold of the coordinates. A line inside the narrower road is valid on the
-  // wider one.
+  // If the search fails, it is repeated on narrower roads. On a road wider than the radius of its bends the
+  // search for the straightest line can end in a fold of the coordinates, and a line on the narrower road is
+  // valid on the wider one.
   bool has_answer = false;
   Result<void> fits = bends_fit(road, car, fit, fit.beside, has_answer);
   double beside = std::min(fit.beside, widest);

@@ -15,6 +15,9 @@
 #include "chicane/road/racing_road.hpp"
 #include "chicane/road/track.hpp"
 
+/// What a car and a road are for the search of a fastest lap: the road at nodes, the functions of a node, the
+/// first guess, and the check that the car fits the road.
+
 namespace chicane::lap_time {
 
 /// The road at the nodes of a plan (docs/limit.md, section 2).
@@ -23,15 +26,26 @@ struct RoadNodes {
   std::vector<double> heading;                ///< heading of the centre line in W, in (−π, π] [rad]
   std::vector<double> step;                   ///< distance to the next node [m]
   std::vector<double> turn;                   ///< turn of the centre line up to the next node [rad]
-  std::vector<double> curvature;              ///< mean around the node [1/m]
-  std::vector<double> front_bend, rear_bend;  ///< curvature that moves the line away at the axles [1/m]
-  std::vector<double> front_left, front_right, rear_left, rear_right;  ///< edges at the axles [m]
+  std::vector<double> curvature;              ///< mean curvature around the node [1/m]
+  std::vector<double> front_bend, rear_bend;  ///< mean curvature from the node to an axle [1/m]
+  /// Distances from the line to the edges at the axles [m].
+  std::vector<double> front_left, front_right, rear_left, rear_right;
+};
+
+/// Size of a car that must fit a road.
+struct CarSize {
+  double front_axle = 0.0, rear_axle = 0.0;  ///< distances from the centre of mass [m]
+  double half_width = 0.0;                   ///< distance to the outer edge of a contact patch [m]
+  double steer_limit = 0.0;                  ///< largest road-wheel angle [rad]
+
+  /// Curvature that the centre of mass drives at full lock and walking pace [1/m].
+  [[nodiscard]] double most_curvature() const noexcept;
 };
 
 /// First variables of every plant's model: position and motion of the body in the road's axes.
 enum CommonState { kOffset, kHeading, kVx, kVy, kYawRate, kSteer, kPedal };
 
-/// Size of a model, and the functions of a node by numbers and by jets.
+/// Functions of a node for the search, from a model that is a template over the scalar.
 template <class Model>
 class ModelFunctions final : public NodeFunctions {
  public:
@@ -69,96 +83,98 @@ class ModelFunctions final : public NodeFunctions {
   const Model& model_;
 };
 
-/// A body in the road's axes (docs/limit.md, eq. 7–8).
+/// Body in the axes of the road (docs/limit.md, eq. 7–8).
 template <class T>
 struct OnRoad {
-  T c, s;      ///< cosine and sine of the heading against the line
+  T c, s;      ///< cosine and sine of the heading relative to the line
   T slowness;  ///< time by arc length of the centre line [s/m]
 
   OnRoad(double curvature, const T& offset, const T& heading, const T& vx, const T& vy)
       : c{cos(heading)}, s{sin(heading)}, slowness{(1.0 - curvature * offset) / (c * vx - s * vy)} {}
 
-  /// Offset from the line of a point of the body (eq. 8); `bend` as RoadNodes.
+  /// Offset from the line of the point (x, y) of the body [m] (eq. 8); `bend` as RoadNodes::front_bend.
   T offset_of(const T& offset, double x, double y, double bend) const {
     const T along = x * c - y * s;
     const T across = offset + x * s + y * c;
     return across - (0.5 * bend) * (along * along) / off_centre(T(1.0 - bend * across));
   }
+  /// Writes the distances of the car's four corners to the edges at node k, less `margin` [m], to `out`:
+  /// front left, front right, rear left, rear right. Returns the place after them.
+  T* edge_gaps(const RoadNodes& at, std::size_t k, const T& offset, const CarSize& car, double margin,
+               T* out) const {
+    const double w = car.half_width;
+    *out++ = at.front_left[k] - margin - offset_of(offset, car.front_axle, w, at.front_bend[k]);
+    *out++ = at.front_right[k] - margin + offset_of(offset, car.front_axle, -w, at.front_bend[k]);
+    *out++ = at.rear_left[k] - margin - offset_of(offset, -car.rear_axle, w, at.rear_bend[k]);
+    *out++ = at.rear_right[k] - margin + offset_of(offset, -car.rear_axle, -w, at.rear_bend[k]);
+    return out;
+  }
 
  private:
-  /// Distance to the bend's centre over its radius. Below kNear it bends away from zero, with two continuous
-  /// derivatives, down to half of kNear: at the centre (eq. 8) has a pole that a search does not come back
-  /// from.
+  /// Distance to the bend's centre over its radius. Below kNear it is replaced by a curve that falls only to
+  /// half of kNear, with two continuous derivatives: at the centre eq. 8 has a pole, from which a search does
+  /// not return.
   static T off_centre(const T& share) {
-    constexpr double kNear = 0.3;
+    constexpr double kNear = 0.3;  // chosen
     if (!(value_of(share) < kNear)) return share;
     const T t = (2.0 / kNear) * (kNear - share);
     return 0.5 * kNear + (0.5 * kNear) / (1.0 + t + t * t);
   }
 };
 
-/// Car of a first guess of a lap.
+/// Simple car for the first guess of a lap.
 struct GuessCar {
-  double grip = 8.0;    ///< sideways [m/s²]
-  double drive = 3.0;   ///< [m/s²]
-  double brake = 5.0;   ///< [m/s²]
-  double speed = 60.0;  ///< top speed [m/s]
-  double front_axle = 1.25, rear_axle = 1.45;
+  double grip = 8.0;                           ///< largest lateral acceleration [m/s²]
+  double drive = 3.0;                          ///< largest acceleration [m/s²]
+  double brake = 5.0;                          ///< largest deceleration [m/s²]
+  double speed = 60.0;                         ///< top speed [m/s]
+  double front_axle = 1.25, rear_axle = 1.45;  ///< distances from the centre of mass [m]
 };
 
-/// Speeds at the nodes along the centre line by curvature, then braking, then drive.
+/// Speeds at the nodes along the centre line [m/s]: limited by curvature, then by braking, then by drive.
 [[nodiscard]] std::vector<double> guess_speeds(const std::vector<double>& curvature,
                                                const std::vector<double>& step, const GuessCar& car);
 
 /// Nodes about `time_step` [s] apart at the speed of the guess, from s = 0 on; at least `least` [m].
 [[nodiscard]] RoadNodes lay_nodes(const road::Track& track, const GuessCar& car, double time_step);
 
-/// Size of a car that must fit a road.
-struct CarSize {
-  double front_axle = 0.0, rear_axle = 0.0;  ///< distances from the centre of mass [m]
-  double half_width = 0.0;                   ///< distance to the outer edge of a contact patch [m]
-  double steer_limit = 0.0;                  ///< [rad]
-
-  /// Curvature that the centre of mass drives at full lock and walking pace [1/m].
-  [[nodiscard]] double most_curvature() const noexcept;
-};
-
-/// Whether the car can get round at walking pace: wide enough everywhere, and a line within the edges that
-/// its full lock can follow (docs/limit.md, section 4). kInvalidArgument with the place, and the radius there
-/// and of the full lock.
-[[nodiscard]] Result<void> fits_road(const road::Track& track, const CarSize& car);
-
-/// Limits of a bend that a car can pass.
+/// Options of fits_road().
 struct Fit {
   double reserve = 1.0 / 1.02;  ///< smallest radius allowed over the radius at full lock
   double surely = 4.0;          ///< radius over the full lock's above which a bend is not checked
   double beside = std::numeric_limits<double>::infinity();  ///< largest offset of the car from the middle [m]
-  double scale = 1.0;                                       ///< scale of the lengths in messages
-  std::function<bool()> go_on{};  ///< asked before each iteration; false: no answer, as if it fitted
+  double scale = 1.0;                                       ///< factor of the lengths in messages
+  std::function<bool()> go_on{};  ///< called before each iteration; false ends the check as if the car fitted
 };
-[[nodiscard]] Result<void> fits_road(const road::Track& track, const CarSize& car, const Fit& fit);
 
-/// Reserve of a plan.
+/// Checks that the car can drive the road at walking pace: it is wide enough everywhere, and has a line
+/// within the edges that the car's full lock can follow (docs/limit.md, section 4). Fails with
+/// kInvalidArgument, with the place, and the radius there and of the full lock.
+[[nodiscard]] Result<void> fits_road(const road::Track& track, const CarSize& car, const Fit& fit = {});
+
+/// Reserve that a plan keeps.
 struct Reserve {
   double margin = 0.0;         ///< gap of each contact patch to its edge [m]
-  double grip_share = 1.0;     ///< share of the tyres' force
+  double grip_share = 1.0;     ///< used share of the tyres' force
   double slip_share = 10.0;    ///< largest slip over the slip of peak force: steering keeps its effect
-  double brake_share = 1.0;    ///< share of the largest braking force
+  double brake_share = 1.0;    ///< used share of the largest braking force
   double steer_weight = 1e-3;  ///< weight of the steering's rate squared, in time [s/rad²·s]
 };
 
-/// A car as the search for its fastest lap sees it.
+/// Interface of a car to the search for its fastest lap.
 class PlanModel {
  public:
   virtual ~PlanModel() = default;
 
   [[nodiscard]] virtual CarSize size() const = 0;
+  /// Gentle car, from whose lap the search converges.
   [[nodiscard]] virtual GuessCar guess_car() const = 0;
   [[nodiscard]] virtual const NodeFunctions& functions() const = 0;
-  virtual void set_road(const RoadNodes& road) = 0;  ///< must outlive its use
+  virtual void set_road(const RoadNodes& road) = 0;  ///< `road` must outlive its use
   virtual void set_reserve(const Reserve& reserve) = 0;
-  /// The variables of a car that follows a curve steadily.
+  /// Sets the variables of a node to a steady motion along a curve [m/s, m/s², 1/m].
   virtual void guess(double speed, double acceleration, double curvature, double* z) const = 0;
+  /// Point of a racing line by the variables of a node, without arc length and time.
   [[nodiscard]] virtual road::RacingLinePoint point(const double* z) const = 0;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Search for a fastest lap: optima on coarse nodes from several guesses, the best one refined. Then the
-// feedback that drives such a plan, and a drive by both as the witness of its time.
+// Search for a fastest lap (optima on coarse nodes from several guesses, the best one refined), the feedback
+// that follows such a plan, and a drive of the plant by both as the witness of its time.
 #include "chicane/lap_time/detail/plan_search.hpp"
 
 #include <algorithm>
@@ -13,10 +13,10 @@
 namespace chicane::lap_time {
 namespace {
 
-// The numbers were chosen.
-constexpr double kCoarse = 2.5;  // coarse spacing over fine spacing of the nodes
-constexpr int kCoarseIterations = 260,
-              kFineIterations = 300;       // limits of a search, which usually takes fewer
+// Chosen.
+constexpr double kCoarse = 2.5;            // coarse spacing over fine spacing of the nodes
+constexpr int kCoarseIterations = 260;     // limit of a search on coarse nodes, which usually takes fewer
+constexpr int kFineIterations = 300;       // limit of a search on fine nodes, which usually takes fewer
 constexpr double kCoarseTolerance = 1e-3;  // tolerance of the starts for fine nodes
 constexpr double kWarmBarrier = 1e-4;      // first barrier near a known solution
 constexpr double kUsable = 1e-2;           // largest scaled violation of a plan that can be driven: some cm
@@ -25,6 +25,7 @@ constexpr double kIterationsOfStart = 55.0, kIterationsOfFine = 35.0;
 constexpr const char* kStopped = "limit: stopped";
 constexpr const char* kNoBudget = "limit: its budget ended before there was a plan";
 
+/// The plan, marked as no optimum.
 NodePlan best_so_far(NodePlan plan) {
   plan.is_best_so_far = true;
   return plan;
@@ -160,8 +161,8 @@ Result<NodePlan> PlanSearch::find_coarse() {
   return fail(ErrorCode::kNotFound, is_out_of_budget_ ? kNoBudget : "limit: no optimum from any first guess");
 }
 
-/// Plans for the caps on slip in order, each from the one before, until a cap has none: without a cap the
-/// search converges only from near its optimum.
+/// Plans for the caps on slip in order, each searched from the previous one, until a cap has none. Without a
+/// cap the search converges only from near its optimum.
 std::vector<NodePlan> PlanSearch::release_slip(NodePlan first) {
   std::vector<NodePlan> plans{std::move(first)};
   for (std::size_t i = 1; i < options_.slip_caps.size() && !is_out_of_budget_; ++i) {
@@ -293,7 +294,8 @@ RingFeedback::RingFeedback(const LimitModel& model, const RoadNodes& road, const
   gains_.resize(nodes * 2 * n);
   Matrix p(n * n, 0.0);
   for (std::size_t i = 0; i < n; ++i) p[i * n + i] = error[i];
-  constexpr std::size_t kRounds = 2;  // the second lap no longer depends on the cost at the end
+  constexpr std::size_t kRounds =
+      2;  // laps backwards; chosen: the second does not depend on the cost at the end
   for (std::size_t turn = kRounds * nodes; turn-- > 0;) {
     const std::size_t k = turn % nodes;
     const std::size_t next = (k + 1) % nodes;
@@ -353,6 +355,7 @@ class PlanTable {
             double length)
       : plan_{plan}, feedback_{feedback}, variables_{variables}, driven_{driven}, length_{length} {}
 
+  /// Variables and, unless null, gains at the place s [m].
   void at(double s, double* z, double* gains) const {
     const std::vector<double>& nodes = plan_.road.s;
     const double wrapped = s - length_ * std::floor(s / length_);
@@ -390,6 +393,7 @@ std::size_t straightest(const NodePlan& plan, std::size_t variables) {
   return best;
 }
 
+/// Sighting of the plant for the judge.
 sim::Sighting sighting_of(const sim::Plant& plant) {
   const model::State& x = plant.state();
   return {{x.x, x.y, x.psi}, plant.output().speed, plant.contact_points()};
@@ -407,7 +411,7 @@ DrivenLaps drive_plan(const road::Track& track, LimitModel& model, const NodePla
   const PlanTable table(plan, feedback, variables, driven, track.length());
   const road::Path& line = track.centre();
 
-  // Begins on the plan, at its straightest node.
+  // Put the plant on the plan, at its straightest node.
   const std::size_t first = straightest(plan, variables);
   const double* z0 = plan.z.data() + first * variables;
   const road::PathPoint foot = line.at(plan.road.s[first]);
@@ -428,7 +432,7 @@ DrivenLaps drive_plan(const road::Track& track, LimitModel& model, const NodePla
   for (double time = 0.0; time < most_time && judge.state().lap < laps;) {
     const sim::WorldState& seen = judge.state();
     table.at(seen.s, z.data(), gains.data());
-    // A command acts for one step: take the plan's inputs in its middle.
+    // Inputs of the plan in the middle of the next step, for which the command acts, plus feedback.
     const OnRoad<double> on(line.at(seen.s).curvature, z[kOffset], z[kHeading], z[kVx], z[kVy]);
     table.at(seen.s + 0.5 * dt / on.slowness, ahead.data(), nullptr);
     model.motion(plant.state(), x.data());
@@ -439,7 +443,7 @@ DrivenLaps drive_plan(const road::Track& track, LimitModel& model, const NodePla
       const double error = i == kHeading ? wrap_angle(x[i] - z[i]) : x[i] - z[i];
       for (std::size_t j = 0; j < 2; ++j) inputs[j] -= gains[j * driven + i] * error;
     }
-    // Advances the plant by one step, and judges it.
+    // One step of the plant, and its judgement.
     const model::Command asked = model.command(plant.state(), ahead.data(), inputs);
     plant.advance(asked);
     model.see(asked, plant.output(), dt);

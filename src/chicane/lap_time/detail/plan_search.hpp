@@ -18,11 +18,11 @@
 
 namespace chicane::lap_time {
 
-/// Lap of a plant's model: nodes of the road, and the variables of each node in turn.
+/// Lap of a car's model: nodes of the road, and the variables of each node in turn.
 struct NodePlan {
   RoadNodes road;
-  std::vector<double> z;
-  double lap_time = 0.0;
+  std::vector<double> z;        ///< variables of the first node, of the second ...
+  double lap_time = 0.0;        ///< [s]
   bool is_best_so_far = false;  ///< no optimum: the budget or a slip cap ended the search
 };
 
@@ -33,8 +33,8 @@ struct NodePlan {
 [[nodiscard]] road::RacingLine line_of(const road::Track& track, std::string_view car, const PlanModel& model,
                                        const NodePlan& plan, double margin);
 
-/// Fastest laps of one model on one road: first from a guess on coarse nodes to fine ones, then from a known
-/// plan to plans with more in reserve.
+/// Search of the fastest laps of one car on one road: from a guess, on coarse nodes and then on fine ones;
+/// and from a known plan to plans with more reserve.
 class PlanSearch {
  public:
   struct Options {
@@ -51,8 +51,8 @@ class PlanSearch {
   PlanSearch(const road::Track& track, PlanModel& model, const Options& options)
       : track_{track}, model_{model}, options_{options} {}
 
-  /// Best plan so far if the budget, or a slip cap without an optimum, ends the search. kNotFound if there is
-  /// none: no optimum from any first guess, or no budget left to reach one.
+  /// Fastest lap, or the best plan so far if the budget or a slip cap without an optimum ends the search.
+  /// Fails with kNotFound without a plan: no optimum from any first guess, or no budget left to reach one.
   [[nodiscard]] Result<NodePlan> find();
   /// Plan on fine nodes near the one with the first slip cap. Pre: find() has found a plan.
   [[nodiscard]] const NodePlan& calm() const noexcept { return calm_; }
@@ -68,21 +68,25 @@ class PlanSearch {
   [[nodiscard]] double violation() const noexcept { return violation_; }
 
  private:
+  /// Variables of a lap along the centre line with a share of the guess car's accelerations.
   [[nodiscard]] std::vector<double> first_guess(const RoadNodes& road, double share) const;
+  /// Best of several optima on coarse nodes.
   [[nodiscard]] Result<NodePlan> find_coarse();
   /// `first`, and plans with further slip caps.
   [[nodiscard]] std::vector<NodePlan> release_slip(NodePlan first);
+  /// Solves from a plan, which it replaces; false without an optimum.
   [[nodiscard]] bool solve(NodePlan& plan, double barrier, int most_iterations, double tolerance);
+  /// Counts an iteration and reports it; false ends the search.
   [[nodiscard]] bool goes_on(double lap_time, std::size_t nodes);
 
   const road::Track& track_;
   PlanModel& model_;
   Options options_;
-  NodePlan calm_;
-  int iterations_ = 0;
-  double stationarity_ = 0.0, violation_ = 0.0;
-  double work_ = 0.0;
-  double expected_ = 0.0;  ///< work of a search without retries [s]
+  NodePlan calm_;                                ///< calm()
+  int iterations_ = 0;                           ///< iterations of all searches
+  double stationarity_ = 0.0, violation_ = 0.0;  ///< those of the last search
+  double work_ = 0.0;                            ///< work()
+  double expected_ = 0.0;                        ///< work of a search without retries [s]
   bool is_stopped_ = false;
   bool is_out_of_budget_ = false;
 };
@@ -91,7 +95,7 @@ class PlanSearch {
 /// model's derivatives along it (docs/limit.md, section 5).
 class RingFeedback {
  public:
-  /// `z`: the plan's nodes.
+  /// `z`: variables of the plan's nodes.
   RingFeedback(const LimitModel& model, const RoadNodes& road, const std::vector<double>& z,
                const Tuning& tuning);
 
@@ -101,16 +105,16 @@ class RingFeedback {
   }
 
  private:
-  int driven_;
-  std::vector<double> gains_;
+  int driven_;                 ///< LimitModel::driven()
+  std::vector<double> gains_;  ///< gains() of all nodes
 };
 
 /// Result of driving a plan.
 struct DrivenLaps {
-  bool is_clean = false;  ///< all laps driven without a boundary event
-  int laps = 0;
-  double best = 0.0;  ///< lap time [s]
-  double worst = 0.0;
+  bool is_clean = false;    ///< all laps driven without a boundary event
+  int laps = 0;             ///< completed laps
+  double best = 0.0;        ///< shortest lap time [s]
+  double worst = 0.0;       ///< longest lap time [s]
   double least_edge = 0.0;  ///< smallest distance of a contact patch to the edge [m]
   double event_s = 0.0;     ///< arc length at the first boundary event [m]
 };

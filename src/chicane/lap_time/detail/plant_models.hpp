@@ -12,11 +12,15 @@
 #include "chicane/sim/double_track.hpp"
 #include "chicane/sim/udacity_car.hpp"
 
+/// Equations of three cars for the search of a fastest lap: the plants `udacity` and `double-track`, and the
+/// model of controllers. functions() of each writes, for the variables z of node k, the rates of the states
+/// by arc length, the equations (= 0), the cost and the inequalities (>= 0), as NodeFunctions orders them.
+
 namespace chicane::lap_time {
 
 /// The plant `udacity` (sim/udacity_car.hpp) in continuous time, its wheels in balance (docs/limit.md,
-/// section 1). Variables: offset, heading, vx, vy, yaw rate, steering angle, tyre force along over mass;
-/// changes of the last two by time.
+/// section 1). Variables: offset, heading, vx, vy, yaw rate, steering angle, longitudinal tyre force over
+/// mass; rates of the last two.
 struct UdacityModel {
   static constexpr int kVariables = 9;
   static constexpr int kStates = 7;
@@ -30,33 +34,37 @@ struct UdacityModel {
 
   sim::UdacityCarParams car{};
   const RoadNodes* road = nullptr;
-  double margin = 0.0;                    ///< kept from the edges [m]
-  double slip_share = kNoCap;             ///< cap on front slip over the slip of peak force
-  static constexpr double kNoCap = 10.0;  ///< caps nothing
-  double brake_share = 1.0;               ///< share of the force at which the rear wheels lock
-  double steer_weight = 1e-5, pedal_weight = 1e-5;
+  double margin = 0.0;                              ///< distance kept from the edges [m]
+  double slip_share = kNoCap;                       ///< largest front slip over the slip of peak force
+  static constexpr double kNoCap = 10.0;            ///< slip share that no lap reaches; chosen
+  double brake_share = 1.0;                         ///< share of the force at which the rear wheels lock
+  double steer_weight = 1e-5, pedal_weight = 1e-5;  ///< weights of squared rates in the cost; chosen
 
   /// Mean delay of the helper at the tyres, over the parts of a step [s].
   static constexpr double kHelperLag = 0.375 * sim::UdacityCar::kStepLength;
 
+  /// Time derivatives of velocity [m/s²] and yaw rate [rad/s²].
   template <class T>
   struct Motion {
-    T vx, vy, yaw;  ///< their changes by time
+    T vx, vy, yaw;
   };
 
+  /// Load of all tyres over mass [m/s²].
   template <class T>
-  [[nodiscard]] T load(const T& speed) const {  ///< load of all tyres over mass [m/s²]
+  [[nodiscard]] T load(const T& speed) const {
     const double rest = (car.mass + 4.0 * car.wheel_mass) * car.gravity;
     const double slope = (3.0 - car.load_filter_offset) / 3.0;
     const double per_mass = car.friction_scale / car.mass;
     return per_mass * (rest * (car.load_filter_offset + slope) + slope * car.downforce * speed);
   }
+  /// Share of the load on the rear wheels.
   [[nodiscard]] double rear_share() const { return car.front_axle / (car.front_axle + car.rear_axle); }
-  /// Share of the force along that the front wheels give: all wheels have the same torque.
+  /// Share of the longitudinal force that the front wheels give: all wheels have the same torque.
   [[nodiscard]] double front_pull() const {
     return (1.0 / car.front_radius) / (1.0 / car.front_radius + 1.0 / car.rear_radius);
   }
 
+  /// Motion under a longitudinal tyre force `pull` over mass; `left_out`: missing share of the steer helper.
   template <class T>
   [[nodiscard]] Motion<T> motion(const T& vx, const T& vy, const T& r, const T& steer, const T& pull,
                                  const T& left_out = T(0.0)) const {
@@ -85,29 +93,15 @@ struct UdacityModel {
       fy += z + rear_side;
       moment += car.front_axle * z - car.rear_axle * rear_side - y * (x + rear_pull_each);
     }
-    // The plant's parts of a step add energy: half the square of a force's change in them.
+    // The explicit parts of the plant's step add energy: half the squared change of velocity in a part.
     const T gain = (0.5 * sim::UdacityCar::kStepLength / sim::UdacityCar::kParts) * (fx * fx + fy * fy) /
                    (vx * vx + vy * vy);
     const T stay = 1.0 - car.steer_helper * (1.0 - left_out);
     const T turn = (car.mass / car.yaw_inertia) * moment - car.angular_drag * r;
-    // The helper follows the body by a part of a step, so the velocity lags behind a body that begins to
-    // turn.
+    // The helper acts a part of a step late: the velocity lags behind a body that begins to turn.
     const T behind = (kHelperLag * car.steer_helper) * turn;
     return {fx + stay * r * vy + (gain - car.linear_drag) * vx + behind * vy,
             fy - stay * r * vx + (gain - car.linear_drag) * vy - behind * vx, turn};
-  }
-
-  /// Share of the helper that is left out: all of it for one step when the body's heading passes +y, where
-  /// the yaw angle of the original's engine wraps; here spread over some tenths of a radian.
-  template <class T>
-  [[nodiscard]] T skipped(double line, const T& heading, const T& r) const {
-    constexpr double kWidth = 0.12;      // [rad]
-    constexpr double kLeastRate = 0.05;  // [rad/s]
-    const T x =
-        (1.0 / kWidth) * (wrap_angle(line + value_of(heading) - 0.5 * kPi) - value_of(heading) + heading);
-    const T bell = 1.0 / (1.0 + x * x);
-    return (sim::UdacityCar::kStepLength * 2.0 / (kPi * kWidth)) * sqrt(r * r + kLeastRate * kLeastRate) *
-           bell * bell;
   }
 
   template <class T>
@@ -117,21 +111,17 @@ struct UdacityModel {
     const T& r = z[kYawRate];
     const T& pull = z[kPedal];
     const OnRoad<T> on(at.curvature[k], n, z[kHeading], z[kVx], z[kVy]);
-    const T left_out = skipped(at.heading[k], z[kHeading], r);
+    const T left_out = model::helper_left_out(sim::UdacityCar::kStepLength, at.heading[k], z[kHeading], r);
     const Motion<T> m = motion(z[kVx], z[kVy], r, z[kSteer], pull, left_out);
     *out++ = (on.s * z[kVx] + on.c * z[kVy]) * on.slowness;
-    *out++ = r * on.slowness;  // the line's own turn is in the intervals
+    *out++ = r * on.slowness;  // Collocation adds the turn of the line
     *out++ = m.vx * on.slowness;
     *out++ = m.vy * on.slowness;
     *out++ = m.yaw * on.slowness;
     *out++ = z[7] * on.slowness;
     *out++ = z[8] * on.slowness;
     *out++ = (1.0 + steer_weight * (z[7] * z[7]) + (1e-4 * pedal_weight) * (z[8] * z[8])) * on.slowness;
-    const double w = car.half_track + car.half_tire;
-    *out++ = at.front_left[k] - margin - on.offset_of(n, car.front_axle, w, at.front_bend[k]);
-    *out++ = at.front_right[k] - margin + on.offset_of(n, car.front_axle, -w, at.front_bend[k]);
-    *out++ = at.rear_left[k] - margin - on.offset_of(n, -car.rear_axle, w, at.rear_bend[k]);
-    *out++ = at.rear_right[k] - margin + on.offset_of(n, -car.rear_axle, -w, at.rear_bend[k]);
+    out = on.edge_gaps(at, k, n, size(), margin, out);
     *out++ = (1.0 / car.steer_limit) * z[kSteer] + 1.0;
     *out++ = 1.0 - (1.0 / car.steer_limit) * z[kSteer];
     *out++ = 0.2 * (drive() - damping() * z[kVx] - pull - turning_mass() * m.vx);
@@ -144,31 +134,36 @@ struct UdacityModel {
     *out++ = 0.1 * (car.speed_cap - z[kVx]);
   }
 
-  /// Acceleration of the wheels' torques at full pedal, less the part lost to slip [m/s²]; part lost to
-  /// damping by speed [1/s]; mass of the turning wheels over mass of the body (docs/limit.md, eq. 3).
+  [[nodiscard]] CarSize size() const {
+    return {car.front_axle, car.rear_axle, car.half_track + car.half_tire, car.steer_limit};
+  }
+  /// Acceleration by the wheels' torques at full pedal, less the part lost to slip [m/s²] (docs/limit.md,
+  /// eq. 3).
   [[nodiscard]] double drive() const {
     constexpr double kSlipLoss = 0.0055;  // measured: 5.43 m/s² at rest, by mean speeds
     const double per_radius = 1.0 / car.front_radius + 1.0 / car.rear_radius;
     return (1.0 - kSlipLoss) * 0.5 * car.drive_torque * per_radius / car.mass;
   }
+  /// Deceleration by the wheels' damping over speed [1/s].
   [[nodiscard]] double damping() const {
-    constexpr double kRimsFaster = 1.05;  // rim speed over road speed
+    constexpr double kRimsFaster = 1.05;  // rim speed over road speed, in the mean; measured
     return kRimsFaster * 2.0 * car.wheel_damping *
            (1.0 / (car.front_radius * car.front_radius) + 1.0 / (car.rear_radius * car.rear_radius)) /
            car.mass;
   }
+  /// Equivalent mass of the turning wheels over mass of the body.
   [[nodiscard]] double turning_mass() const { return 2.0 * car.wheel_mass / car.mass; }
-  /// The pedal that gives a tyre force over mass while vx changes by `change`.
+  /// Pedal for a longitudinal tyre force `pull` over mass while vx changes by `change` [m/s²].
   [[nodiscard]] double pedal_for(double pull, double vx, double change) const {
     const double torque = pull + damping() * vx + turning_mass() * change;
     return torque >= 0.0 ? torque / drive() : torque / (4.0 * car.brake_torque / car.drive_torque * drive());
   }
 };
 
-/// The plants `double-track` and `road-car` (sim/double_track.hpp) with tyres that have settled to their
-/// slip, its wheels in balance (docs/limit.md, section 1). Variables: offset, heading, vx, vy, yaw rate,
-/// steering angle, pedal after its lag, the lagged accelerations that shift load; changes of steering and
-/// pedal by time; the forward slip of each wheel, which the balance of its torques decides.
+/// The plants `double-track` and `road-car` (sim/double_track.hpp), with tyres in steady slip and wheels in
+/// balance (docs/limit.md, section 1). Variables: offset, heading, vx, vy, yaw rate, steering angle, pedal
+/// after its lag, the lagged accelerations that shift load; rates of steering and pedal; the forward slip of
+/// each wheel, which follows from the balance of its torques.
 struct DoubleTrackModel {
   static constexpr int kVariables = 15;
   static constexpr int kStates = 9;
@@ -183,18 +178,19 @@ struct DoubleTrackModel {
 
   sim::DoubleTrackParams car{};
   const RoadNodes* road = nullptr;
-  double margin = 0.0;  ///< kept from the edges [m]
-  double grip_share = 1.0;
-  double slip_share = kNoCap;  ///< cap on combined slip over the slip of peak force
-  double steer_weight = 1e-5, pedal_weight = 1e-5;
+  double margin = 0.0;                              ///< distance kept from the edges [m]
+  double grip_share = 1.0;                          ///< used share of the tyres' force
+  double slip_share = kNoCap;                       ///< largest combined slip over the slip of peak force
+  double steer_weight = 1e-5, pedal_weight = 1e-5;  ///< weights of squared rates in the cost; chosen
 
   template <class T>
   struct Motion {
-    T ax, ay, yaw;             ///< acceleration in the body's axes, and of the yaw
-    std::array<T, 4> balance;  ///< torques of the wheels over rest load and radius
-    std::array<T, 4> slip;     ///< combined, squared
+    T ax, ay, yaw;             ///< acceleration in the body's axes [m/s²], yaw acceleration [rad/s²]
+    std::array<T, 4> balance;  ///< sum of torques of each wheel over rest load and radius
+    std::array<T, 4> slip;     ///< squared combined slip of each wheel
   };
 
+  /// Motion by the variables of a node.
   template <class T>
   [[nodiscard]] Motion<T> motion(const T* z) const {
     const T& vx = z[kVx];
@@ -203,7 +199,7 @@ struct DoubleTrackModel {
     const T cosine = cos(z[kSteer]);
     const T sine = sin(z[kSteer]);
     const T square = vx * vx + vy * vy;
-    // Without downforce: plans that rely on it leave the road when they are driven.
+    // Downforce is left out: plans that rely on it leave the road when they are driven.
     const auto shift = car.load_shift(z[kShiftX], z[kShiftY], T(0.0));
     const T drive = (0.5 * car.drive_force) * Corners::positive(z[kPedal], kPedalCorner);
     const T brake = (0.5 * car.brake_force) * Corners::positive(T(-z[kPedal]), kPedalCorner);
@@ -235,7 +231,7 @@ struct DoubleTrackModel {
     return m;
   }
 
-  /// Share of the drive that traction control passes.
+  /// Drive force that traction control permits at a slip.
   template <class T>
   [[nodiscard]] T driven(const T& drive, const T& slip) const {
     if (!car.has_traction_control()) return drive;
@@ -252,7 +248,7 @@ struct DoubleTrackModel {
     const OnRoad<T> on(at.curvature[k], n, z[kHeading], z[kVx], z[kVy]);
     const Motion<T> m = motion(z);
     *out++ = (on.s * z[kVx] + on.c * z[kVy]) * on.slowness;
-    *out++ = r * on.slowness;  // the line's own turn is in the intervals
+    *out++ = r * on.slowness;  // Collocation adds the turn of the line
     *out++ = (m.ax + r * z[kVy]) * on.slowness;
     *out++ = (m.ay - r * z[kVx]) * on.slowness;
     *out++ = m.yaw * on.slowness;
@@ -264,11 +260,7 @@ struct DoubleTrackModel {
     *out++ = (1.0 + steer_weight * (z[kSteerRate] * z[kSteerRate]) +
               (0.01 * pedal_weight) * (z[kPedalRate] * z[kPedalRate])) *
              on.slowness;
-    const double w = car.half_track() + car.half_tire();
-    *out++ = at.front_left[k] - margin - on.offset_of(n, car.front_axle, w, at.front_bend[k]);
-    *out++ = at.front_right[k] - margin + on.offset_of(n, car.front_axle, -w, at.front_bend[k]);
-    *out++ = at.rear_left[k] - margin - on.offset_of(n, -car.rear_axle, w, at.rear_bend[k]);
-    *out++ = at.rear_right[k] - margin + on.offset_of(n, -car.rear_axle, -w, at.rear_bend[k]);
+    out = on.edge_gaps(at, k, n, size(), margin, out);
     const T steer_command = (1.0 / car.steer_limit) * (steer + car.steer_lag * z[kSteerRate]);
     *out++ = 1.0 - steer_command;
     *out++ = 1.0 + steer_command;
@@ -286,18 +278,22 @@ struct DoubleTrackModel {
     }
   }
 
-  static constexpr double kNoCap = 10.0;  ///< caps nothing
+  [[nodiscard]] CarSize size() const {
+    return {car.front_axle, car.rear_axle, car.half_track() + car.half_tire(), car.steer_limit};
+  }
+
+  static constexpr double kNoCap = 10.0;  ///< slip share that no lap reaches; chosen
 
  private:
   using Corners = model::Rounded;
-  static constexpr double kPedalCorner = 0.01;  ///< rounding of the pedal's corner at 0
-  static constexpr double kLoadCorner = 50.0;   ///< [N]
-  static constexpr double kLeastSlip = 1e-3;    ///< rounding of the slip's size at 0
+  // Widths of rounded corners; chosen.
+  static constexpr double kPedalCorner = 0.01;  ///< of the pedal at 0
+  static constexpr double kLoadCorner = 50.0;   ///< of a wheel's load at 0 [N]
+  static constexpr double kLeastSlip = 1e-3;    ///< of the slip's size at 0
 };
 
-/// The car as a controller models it (model/prediction.hpp) in continuous time (docs/racing.md,
-/// section 1). Variables: offset, heading, vx, vy, yaw rate, steering angle, net acceleration; changes of the
-/// last two by time.
+/// The car as a controller models it (model/prediction.hpp), in continuous time (docs/racing.md, section 1).
+/// Variables: offset, heading, vx, vy, yaw rate, steering angle, net acceleration; rates of the last two.
 struct VehicleModel {
   static constexpr int kVariables = 9;
   static constexpr int kStates = 7;
@@ -310,16 +306,21 @@ struct VehicleModel {
   model::PredictionModel model{model::VehicleParams{}};
   model::BrakingStability stability{model::VehicleParams{}};  ///< braking bound with all of the grip
   bool is_steered_slowly = false;                             ///< slow steering: the plan respects its rate
-  model::SlidingBound sliding{model::VehicleParams{}};
-  bool slides = false;  ///< the rear tyres slip as far as `sliding` permits
+  model::SlidingBound sliding{model::VehicleParams{}};        ///< bound on slip beyond the peak
+  bool slides = false;                                        ///< slips may reach `sliding`
   const RoadNodes* road = nullptr;
-  double margin = 0.0;         ///< kept from the edges [m]
-  double slip_share = 1.0;     ///< cap on an axle's slip over its peak slip
-  double brake_share = 1.0;    ///< share of the largest useful deceleration
-  double speed_limit = 100.0;  ///< [m/s]
+  double margin = 0.0;         ///< distance kept from the edges [m]
+  double slip_share = 1.0;     ///< largest slip of an axle over its peak slip
+  double brake_share = 1.0;    ///< used share of the largest useful deceleration
+  double speed_limit = 100.0;  ///< largest speed [m/s]
   double steer_weight = 1e-3;  ///< weight of the steering's rate squared, in time [s/rad²·s]
-  double jerk_weight = 1e-6;   ///< weight of the change of acceleration squared
+  double jerk_weight = 1e-6;   ///< weight of the squared jerk in the cost; chosen
 
+  [[nodiscard]] CarSize size() const {
+    const model::VehicleParams& car = model.vehicle();
+    return {car.front_axle, car.rear_axle, 0.5 * (car.track_width + car.tire_width), car.steer_limit};
+  }
+  /// Deceleration by drag [m/s²].
   template <class T>
   [[nodiscard]] T drag(const T& v) const {
     const model::VehicleParams& car = model.vehicle();
@@ -340,24 +341,20 @@ struct VehicleModel {
     const model::BodyMotion<T> body{vx, z[kVy], z[kYawRate], steer, net};
     auto change = model.change(body);
     if (slides && car.helper_gap > 0.0) {
-      const T turn = car.steer_helper * model::helper_left_out(car, at.heading[k], z[kHeading], z[kYawRate]) *
-                     z[kYawRate];
+      const T left_out = model::helper_left_out(car.helper_gap, at.heading[k], z[kHeading], z[kYawRate]);
+      const T turn = car.steer_helper * left_out * z[kYawRate];
       change.vx = change.vx + turn * z[kVy];
       change.vy = change.vy - turn * vx;
     }
     *out++ = (on.s * vx + on.c * z[kVy]) * on.slowness;
-    *out++ = z[kYawRate] * on.slowness;  // the line's own turn is in the intervals
+    *out++ = z[kYawRate] * on.slowness;  // Collocation adds the turn of the line
     *out++ = change.vx * on.slowness;
     *out++ = change.vy * on.slowness;
     *out++ = change.r * on.slowness;
     *out++ = steer_rate * on.slowness;
     *out++ = jerk * on.slowness;
     *out++ = (1.0 + steer_weight * (steer_rate * steer_rate) + jerk_weight * (jerk * jerk)) * on.slowness;
-    const double w = 0.5 * (car.track_width + car.tire_width);
-    *out++ = at.front_left[k] - margin - on.offset_of(n, car.front_axle, w, at.front_bend[k]);
-    *out++ = at.front_right[k] - margin + on.offset_of(n, car.front_axle, -w, at.front_bend[k]);
-    *out++ = at.rear_left[k] - margin - on.offset_of(n, -car.rear_axle, w, at.rear_bend[k]);
-    *out++ = at.rear_right[k] - margin + on.offset_of(n, -car.rear_axle, -w, at.rear_bend[k]);
+    out = on.edge_gaps(at, k, n, size(), margin, out);
     const T asked = (1.0 / car.steer_limit) * (steer + car.steer_lag * steer_rate);
     *out++ = 1.0 + asked;
     *out++ = 1.0 - asked;
@@ -381,7 +378,7 @@ struct VehicleModel {
     *out++ = 0.1 * (speed_limit - vx);
   }
 
-  /// Margin of steering against braking with this force over mass; negative: the car cannot be caught.
+  /// Distance of a braking force over mass from the bound of BrakingStability; negative beyond it.
   template <class T>
   [[nodiscard]] T stable_braking(const T& force, const T& vx, const T& yaw_rate) const {
     if (!is_steered_slowly) return T(1.0);
@@ -390,11 +387,12 @@ struct VehicleModel {
     return 0.1 * (force + stability.smooth_most_braking(vx, use));
   }
 
-  static constexpr double kLeastLateral = 0.1;    ///< [m/s²]
-  static constexpr double kMostSteerRate = 10.0;  ///< [rad/s]; represents an instant change
-  static constexpr double kMostPower = 1e4;       ///< [W/kg]; represents no limit
-  static constexpr double kMostAlong = 0.95;      ///< share of a tyre's force: the rest holds the course
-  static constexpr double kLeastSpeed = 2.5;      ///< [m/s]
+  // Chosen.
+  static constexpr double kLeastLateral = 0.1;    ///< rounding of |lateral acceleration| [m/s²]
+  static constexpr double kMostSteerRate = 10.0;  ///< steering rate that stands for an instant change [rad/s]
+  static constexpr double kMostPower = 1e4;       ///< power over mass that stands for no limit [W/kg]
+  static constexpr double kMostAlong = 0.95;      ///< used share of a tyre's force: the rest holds the course
+  static constexpr double kLeastSpeed = 2.5;      ///< least speed of a plan [m/s]
   /// Decrease of slip_share with speed [s/m]: at speed yaw is damped less, and the car covers more road
   /// before a command acts. Three quarters are left at 50 m/s.
   static constexpr double kSlipPerSpeed = 0.005;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Access rules for requests, and the owner of a port that is taken.
+// Access rules for requests, and the program that has a port which cannot be listened on.
 #include "chicane/net/detail/connections.hpp"
 
 #include <arpa/inet.h>
@@ -13,16 +13,17 @@
 #include <set>
 #include <sstream>
 
+#include "chicane/base/text.hpp"
 #include "chicane/net/http_response.hpp"
 
 namespace chicane::net {
 namespace {
 
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+/// Whether two texts are equal but for the case of ASCII letters.
+bool equal(std::string_view a, std::string_view b) { return lower(a) == lower(b); }
 
-bool equal(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](char x, char y) { return lower(x) == lower(y); });
+bool is_among(const std::vector<std::string>& entries, std::string_view text) {
+  return std::find(entries.begin(), entries.end(), text) != entries.end();
 }
 
 /// Host of "name:port" or "[::1]:port", without port and brackets; empty if the port is no number.
@@ -50,13 +51,14 @@ bool is_numeric_address(std::string_view name) {
          inet_pton(AF_INET6, text.c_str(), bytes.data()) == 1;
 }
 
+/// Whether a numeric address is one of this machine alone.
 bool is_loopback(std::string_view name) {
   return name == "::1" || (name.starts_with("127.") && is_numeric_address(name));
 }
 
 Admission refuse(unsigned status, std::string words) { return {.status = status, .words = std::move(words)}; }
 
-/// The value of `name` in "name=value" parts between `separator`s; none when it is not there.
+/// Value of `name` in a list of "name=value" parts with `separator`s between; none when absent.
 std::optional<std::string_view> value_of(std::string_view parts, char separator, std::string_view name) {
   while (!parts.empty()) {
     const std::size_t end = std::min(parts.find(separator), parts.size());
@@ -69,38 +71,39 @@ std::optional<std::string_view> value_of(std::string_view parts, char separator,
   return std::nullopt;
 }
 
-/// Target of a link with a token; never another server, as "//host" would be.
+/// `path` as the target of a redirect; "/" for one that browsers read as another server, like "//host".
 std::string page_of(std::string_view path) {
   return path.starts_with('/') && !path.starts_with("//") && path.find('\\') == std::string_view::npos
              ? std::string(path)
              : "/";
 }
 
-}  // namespace
-
-bool address_is_loopback(std::string_view address) { return is_loopback(address); }
-
+/// Whether a Host header (with or without port) names this machine: `localhost` or a loopback address.
 bool host_is_loopback(std::string_view host) {
   const std::string_view name = without_port(host);
   return equal(name, "localhost") || is_loopback(name);
 }
 
+/// Whether a Host header (with or without port) names this server: `localhost` and loopback addresses always;
+/// the bound `address`; any numeric address when bound to more than loopback (a rebinding attack needs a
+/// name); names in `allowed`, compared whole and without regard to case.
 bool host_is_allowed(std::string_view host, std::string_view address,
                      const std::vector<std::string>& allowed) {
   const std::string_view name = without_port(host);
   if (name.empty()) return false;
-  if (equal(name, "localhost") || is_loopback(name) || name == address) return true;
+  if (host_is_loopback(host) || name == address) return true;
   if (!is_loopback(address) && is_numeric_address(name)) return true;
   return std::any_of(allowed.begin(), allowed.end(),
                      [&](const std::string& entry) { return equal(entry, name); });
 }
 
-bool origin_is_allowed(std::string_view origin, std::string_view host,
-                       const std::vector<std::string>& allowed) {
-  if (std::find(allowed.begin(), allowed.end(), origin) != allowed.end()) return true;
-  constexpr std::string_view kScheme = "http://";  // the only one that is served
+/// Whether an Origin header names the host and port of the Host header, by HTTP: no server here speaks TLS.
+bool is_own_origin(std::string_view origin, std::string_view host) {
+  constexpr std::string_view kScheme = "http://";
   return origin.starts_with(kScheme) && equal(origin.substr(kScheme.size()), host);
 }
+
+}  // namespace
 
 Admission Doorkeeper::admit(const Visitor& visitor) const {
   if (visitor.hosts != 1) return refuse(400, "one Host header is needed");
@@ -109,26 +112,25 @@ Admission Doorkeeper::admit(const Visitor& visitor) const {
         403,
         fmt::format("host '{}' is not allowed here: use a numeric address, or start with --allow-host {}",
                     visitor.host, visitor.host.substr(0, visitor.host.find(':'))));
-  const bool is_foreign = !visitor.origin.empty() && !is_own(visitor.origin, visitor.host);
-  const bool is_let_in =
-      std::find(allowed_origins.begin(), allowed_origins.end(), visitor.origin) != allowed_origins.end();
+  const bool is_foreign = !visitor.origin.empty() && !is_own_origin(visitor.origin, visitor.host);
+  const bool is_let_in = is_among(allowed_origins, visitor.origin);
   if (visitor.is_upgrade && is_foreign && !is_let_in)
     return refuse(403, fmt::format("pages of '{0}' may not connect here: start with --allow-origin {0}",
                                    visitor.origin));
 
   const std::size_t question = std::min(visitor.target.find('?'), visitor.target.size());
   const std::string_view path = visitor.target.substr(0, question);
-  const auto asked =
+  const auto in_link =
       value_of(visitor.target.substr(std::min(question + 1, visitor.target.size())), '&', "token");
-  const bool has_link = asked && is_token(*asked, token);
-  if (asked && !token.empty() && !has_link)
+  const bool has_link = in_link && is_token(*in_link, token);
+  if (in_link && !token.empty() && !has_link)
     return refuse(403, "the token is not the one that the program printed");
-  const auto kept = value_of(visitor.cookies, ';', cookie_name());
-  const bool has_token = token.empty() || has_link || (kept && is_token(*kept, token));
+  const auto in_cookie = value_of(visitor.cookies, ';', cookie_name());
+  const bool has_token = token.empty() || has_link || (in_cookie && is_token(*in_cookie, token));
 
   Admission admission;
-  const bool is_local = address_is_loopback(address) && host_is_loopback(visitor.host);
-  // A browser says which page asks, and one of ours was loaded from this machine.
+  const bool is_local = is_loopback(address) && host_is_loopback(visitor.host);
+  // Origin is set by browsers alone; a page of this server was loaded from this machine.
   const bool is_local_page = is_local && !visitor.origin.empty() && !is_foreign;
   admission.may_watch = is_local || has_token;
   admission.may_control = has_token || is_local_page;
@@ -143,11 +145,8 @@ Admission Doorkeeper::admit(const Visitor& visitor) const {
   return admission;
 }
 
-bool Doorkeeper::is_own(std::string_view origin, std::string_view host) const {
-  return origin_is_allowed(origin, host, {});
-}
-
-// Name with the port: browsers keep cookies by host, so that programs on one machine need different names.
+// Has the port in the name: browsers keep cookies by host, so that programs on one machine need different
+// names.
 std::string Doorkeeper::cookie_name() const { return fmt::format("chicane-{}", port); }
 
 std::string Doorkeeper::cookie() const {
@@ -156,8 +155,9 @@ std::string Doorkeeper::cookie() const {
 
 namespace {
 
-/// Socket inodes that listen on `port`, from one of the tables of proc(5): columns sl, local_address (hex
-/// address:port), rem_address, st (0A = listening), queues, timer, retransmits, uid, timeout, inode.
+/// Adds the sockets that listen on `port`, as "socket:[INODE]", from a table of proc(5) with the columns sl,
+/// local_address (hex address:port), rem_address, st (0A = listening), queues, timer, retransmits, uid,
+/// timeout, inode.
 void add_listeners(const char* table, std::uint16_t port, std::set<std::string>& inodes) {
   std::ifstream file(table);
   std::string line;
@@ -174,6 +174,7 @@ void add_listeners(const char* table, std::uint16_t port, std::set<std::string>&
   }
 }
 
+/// Whether a process, by its folder in /proc, has one of the sockets open.
 bool holds(const std::filesystem::path& process, const std::set<std::string>& inodes) {
   std::error_code ec;
   for (std::filesystem::directory_iterator it(process / "fd", ec), end; !ec && it != end; it.increment(ec)) {
@@ -184,8 +185,8 @@ bool holds(const std::filesystem::path& process, const std::set<std::string>& in
   return false;
 }
 
-}  // namespace
-
+/// Program that has a TCP port of this machine, from /proc: "mpc (pid 1234)". "a connection that is just
+/// ending" if no program listens there, "another program" if it belongs to another user.
 std::string port_holder(std::uint16_t port) {
   std::set<std::string> inodes;
   add_listeners("/proc/net/tcp", port, inodes);
@@ -202,6 +203,8 @@ std::string port_holder(std::uint16_t port) {
   }
   return "another program";
 }
+
+}  // namespace
 
 Error cannot_listen(const std::string& address, std::uint16_t port, bool is_in_use,
                     const std::string& words) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Access rules of a server, and the queue of messages that wait for each connection.
 #pragma once
 
 #include <algorithm>
@@ -16,40 +17,25 @@
 
 namespace chicane::net {
 
-/// Is a Host header (with or without port) one of ours? `localhost` and loopback addresses always; the bound
-/// `address`; any numeric address when bound to more than loopback (a rebinding attack needs a name); names
-/// in `allowed`, which are compared whole and without regard to case.
-[[nodiscard]] bool host_is_allowed(std::string_view host, std::string_view address,
-                                   const std::vector<std::string>& allowed);
-
-/// Whether an Origin header names the same host and port as the Host header, by HTTP without TLS as this
-/// server speaks it, or is in `allowed` word for word.
-[[nodiscard]] bool origin_is_allowed(std::string_view origin, std::string_view host,
-                                     const std::vector<std::string>& allowed);
-
-/// Is a numeric address one of this machine alone?
-[[nodiscard]] bool address_is_loopback(std::string_view address);
-/// Does a Host header (with or without port) name this machine: `localhost` or a loopback address?
-[[nodiscard]] bool host_is_loopback(std::string_view host);
-
-/// Sender of a request, by its headers. Empty where a header is absent.
+/// Head of a request, as far as access depends on it. A text is empty where its header is absent.
 struct Visitor {
-  std::string_view target{};  ///< path and query
-  std::string_view host{};
-  std::string_view origin{};
-  std::string_view cookies{};
-  std::size_t hosts = 1;  ///< Host headers
-  bool is_upgrade = false;
+  std::string_view target{};   ///< path and query
+  std::string_view host{};     ///< Host header
+  std::string_view origin{};   ///< Origin header: scheme, host and port of the page that sends the request
+  std::string_view cookies{};  ///< Cookie header
+  std::size_t hosts = 1;       ///< number of Host headers
+  bool is_upgrade = false;     ///< asks for a WebSocket
 };
 
 /// Decision about a request.
 struct Admission {
-  unsigned status = 200;   ///< status of an answer in words, unless 200; 303: go to `location` with the token
-                           ///< kept as a cookie
-  std::string words{};     ///< text of the answer
-  std::string location{};  ///< same server, without the token
-  bool may_watch = false;  ///< reads the run
-  bool may_control = false;  ///< change the state of the run
+  /// 200: admitted. 303: redirect to `location`, with the token as a cookie. 400 and 403: refused with
+  /// `words`.
+  unsigned status = 200;
+  std::string words{};       ///< text of a refusal
+  std::string location{};    ///< target on this server, without the token
+  bool may_watch = false;    ///< may read the run
+  bool may_control = false;  ///< may change the run
 };
 
 /// Access rules of one server, applied to a request's head (docs/reference/security.md has the table).
@@ -57,8 +43,8 @@ struct Doorkeeper {
   std::string address;                       ///< listening address
   std::vector<std::string> allowed_hosts;    ///< hosts allowed in addition to ours
   std::vector<std::string> allowed_origins;  ///< origins allowed in addition to our own pages
-  std::string token;                         ///< empty: none is asked for
-  std::uint16_t port = 0;
+  std::string token;                         ///< secret of visitors; empty: none is needed
+  std::uint16_t port = 0;                    ///< listening port
 
   [[nodiscard]] Admission admit(const Visitor& visitor) const;
   /// Value of a Set-Cookie header that carries the token.
@@ -66,25 +52,22 @@ struct Doorkeeper {
 
  private:
   [[nodiscard]] std::string cookie_name() const;
-  [[nodiscard]] bool is_own(std::string_view origin, std::string_view host) const;
 };
 
-/// Owner of a TCP port of this machine, from /proc: "mpc (pid 1234)". "a connection that is just ending"
-/// without an owner, "another program" if the process belongs to another user.
-[[nodiscard]] std::string port_holder(std::uint16_t port);
-
-/// Why nothing can be listened on at `address` and `port`: `is_in_use`, or in the system's `words`.
+/// Error of a server that cannot listen: names the program that has the port if the port `is_in_use`, else
+/// the system's reason in `words`.
 [[nodiscard]] Error cannot_listen(const std::string& address, std::uint16_t port, bool is_in_use,
                                   const std::string& words);
 
+/// A message to a connection.
 struct Outgoing {
   Bytes bytes;
-  bool binary = false;
+  bool binary = false;  ///< frame type: binary or text
   Delivery delivery = Delivery::kReliable;
-  std::uint32_t topic = 0;
+  std::uint32_t topic = 0;  ///< number by which Delivery::kNewest finds the message to replace
 };
 
-/// The bytes that wait for all connections together; what several wait for counts once.
+/// Sum of the bytes that wait for all connections. Bytes shared by several messages count once.
 class WaitingBytes {
  public:
   void add(const Bytes& bytes) {
@@ -99,11 +82,12 @@ class WaitingBytes {
   [[nodiscard]] std::size_t total() const { return total_; }
 
  private:
-  std::unordered_map<const std::string*, std::size_t> holders_;
-  std::size_t total_ = 0;
+  std::unordered_map<const std::string*, std::size_t> holders_;  ///< number of messages with these bytes
+  std::size_t total_ = 0;                                        ///< [byte]
 };
 
-/// Messages that wait for one connection; the front one is written while `is_writing`.
+/// Messages that wait for one connection. While the connection writes (`is_writing`), the front message is
+/// the one being written, which is neither replaced nor dropped.
 class SendQueue {
  public:
   explicit SendQueue(WaitingBytes& all) : all_{all} {}
@@ -111,7 +95,7 @@ class SendQueue {
   SendQueue& operator=(const SendQueue&) = delete;
   ~SendQueue() { drop_waiting(false); }
 
-  /// Adds a message. False if `most` wait already.
+  /// Adds a message. False if `most` messages wait already.
   [[nodiscard]] bool add(Outgoing message, bool is_writing, std::size_t most) {
     if (message.delivery == Delivery::kNewest) {
       const auto waiting =
@@ -135,7 +119,7 @@ class SendQueue {
     release(waiting_.front());
     waiting_.pop_front();
   }
-  /// Drops what waits, but for the front one where it is being written.
+  /// Drops all messages that are not being written.
   void drop_waiting(bool is_writing) {
     while (waiting_.size() > (is_writing ? 1U : 0U)) {
       release(waiting_.back());
@@ -156,9 +140,9 @@ class SendQueue {
     all_.remove(message.bytes);
   }
 
-  std::deque<Outgoing> waiting_;
-  WaitingBytes& all_;
-  std::size_t bytes_ = 0;  ///< bytes in this connection's queue
+  std::deque<Outgoing> waiting_;  ///< oldest first
+  WaitingBytes& all_;             ///< sum over all connections
+  std::size_t bytes_ = 0;         ///< bytes in this connection's queue
 };
 
 }  // namespace chicane::net

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// CDR, the bytes of ROS 2 messages: a reader, a writer, and archives by which a message names its fields
+// once.
 #pragma once
 
 #include <algorithm>
@@ -22,8 +24,8 @@
 
 namespace chicane::protocol {
 
-/// Reads one message of a stranger: CDR (XCDR1) of either byte order with its four-byte header. What lies
-/// beyond the end reads as zero, and ok() is false from then on.
+/// Reader of one message of another program: CDR (XCDR1) of either byte order with its four-byte header.
+/// Reads beyond the end give zero, and ok() is false from then on.
 class CdrSource {
  public:
   explicit CdrSource(std::string_view bytes) : bytes_{bytes} {
@@ -35,6 +37,7 @@ class CdrSource {
   [[nodiscard]] bool ok() const { return ok_; }
   [[nodiscard]] bool is_at_end() const { return ok_ && at_ == bytes_.size(); }
 
+  /// Number of type T, aligned to its size.
   template <class T>
   T get() {
     static_assert(std::is_arithmetic_v<T>);
@@ -46,10 +49,10 @@ class CdrSource {
     return std::bit_cast<T>(raw);
   }
   double number() { return get<double>(); }
-  /// A boolean, of which any byte but zero is true.
+  /// Boolean; any byte but zero is true.
   bool flag() { return get<std::uint8_t>() != 0; }
 
-  /// A string, without the zero at its end.
+  /// String, without the zero at its end.
   std::string_view text() {
     const auto size = get<std::uint32_t>();
     if (!ok_ || size > bytes_.size() - at_) return fail();
@@ -96,18 +99,18 @@ class CdrSource {
   }
 
   std::string_view bytes_;
-  std::size_t at_ = kHeader;
-  bool ok_ = false;
-  bool swaps_ = false;
+  std::size_t at_ = kHeader;  ///< position of the next byte
+  bool ok_ = false;           ///< see ok()
+  bool swaps_ = false;        ///< the message is big-endian
 };
 
-/// A time of a message [ns].
+/// Time since 1970 in a message.
 struct StampNs {
   std::int64_t nanoseconds = 0;
 };
 
-/// One message under construction: XCDR1 with its header, each primitive aligned to its size counted from the
-/// end of the header (OMG DDSI-RTPS 2.3, chapter 10). Padding is zero, so equal messages have equal bytes.
+/// Writer of one message: XCDR1 with its header, each primitive aligned to its size counted from the end of
+/// the header (OMG DDSI-RTPS 2.3, chapter 10). Padding is zero, so that equal messages have equal bytes.
 class CdrWriter {
  public:
   static_assert(std::endian::native == std::endian::little);
@@ -124,6 +127,7 @@ class CdrWriter {
     bytes_.append(value).push_back('\0');
     return *this;
   }
+  /// Number of elements of a sequence.
   CdrWriter& count(std::size_t value) { return put(static_cast<std::uint32_t>(value)); }
   CdrWriter& texts(const std::vector<std::string>& values) {
     count(values.size());
@@ -135,9 +139,11 @@ class CdrWriter {
     const std::int64_t ns = nanoseconds < 0 ? 0 : nanoseconds;
     return put(static_cast<std::int32_t>(ns / 1'000'000'000), static_cast<std::uint32_t>(ns % 1'000'000'000));
   }
+  /// geometry_msgs/Quaternion of a yaw [rad].
   CdrWriter& orientation(double yaw) {
     return put(0.0, 0.0, chicane::sin(0.5 * yaw), chicane::cos(0.5 * yaw));
   }
+  /// float64 fields that are zero.
   CdrWriter& zeros(int number) {
     for (int i = 0; i < number; ++i) append(0.0);
     return *this;
@@ -167,9 +173,10 @@ class CdrWriter {
   std::string bytes_{'\0', '\1', '\0', '\0'};
 };
 
-// A message names its fields once, in order, in `fields(archive, message)`. One archive writes them, one
-// reads them.
+// A message names its fields once, in order, in `fields(archive, message)`. The two archives below have the
+// same functions: one writes fields, the other reads them.
 
+/// Archive that writes.
 class WritingArchive {
  public:
   /// Numbers, booleans, texts and poses, as they are.
@@ -181,12 +188,14 @@ class WritingArchive {
   }
   /// builtin_interfaces/Time.
   void time(std::int64_t nanoseconds) { to_.stamp_ns(nanoseconds); }
-  /// Values that our readers skip.
+  /// Values without a field in the struct: written, skipped when read.
   void constant(auto... values) { to_.put(values...); }
-  /// Values at the end of a message that are left unread.
+  /// Values at the end of a message: written, not read.
   void trailing(auto... values) { to_.put(values...); }
+  /// float64 values without a field in the struct: written as zero, skipped when read.
   void zeros(int number) { to_.zeros(number); }
-  /// A sequence, of elements with at least `smallest` bytes.
+  /// Sequence of at most `capacity` elements of at least `smallest` bytes, by which a reader bounds its
+  /// memory.
   template <class Item, class Each>
   void list(const std::vector<Item>& items, std::size_t /*smallest*/, std::size_t /*capacity*/, Each each) {
     to_.count(items.size());
@@ -217,7 +226,7 @@ class WritingArchive {
   CdrWriter to_;
 };
 
-/// Reads bytes of other programs.
+/// Archive that reads bytes of other programs.
 class ReadingArchive {
  public:
   explicit ReadingArchive(std::string_view bytes) : from_{bytes} {}
@@ -236,7 +245,7 @@ class ReadingArchive {
   void zeros(int number) {
     for (int i = 0; i < number; ++i) from_.number();
   }
-  /// Sequence that our readers skip.
+  /// Sequence without a field in the struct.
   template <class Number>
   void skip_list() {
     for (std::uint32_t i = from_.count(sizeof(Number)); i > 0; --i) from_.get<Number>();
@@ -264,7 +273,7 @@ class ReadingArchive {
     list(texts, 4, kMostTexts, [&](std::string& text) { get(text); });
   }
   void get(bool& flag) { flag = from_.flag(); }
-  /// Position and the yaw of an orientation that may also lean.
+  /// Position in the plane, and yaw of an orientation that may also have roll and pitch.
   void get(model::Pose& pose) {
     pose.x = from_.number();
     pose.y = from_.number();
@@ -277,13 +286,13 @@ class ReadingArchive {
     value = from_.get<Number>();
   }
 
-  static constexpr std::size_t kMostTexts = 1'000'000;
+  static constexpr std::size_t kMostTexts = 1'000'000;  ///< limit of texts or numbers in one field
 
   CdrSource from_;
-  bool fits_ = true;
+  bool fits_ = true;  ///< no list so far was longer than its capacity
 };
 
-/// The bytes of a message.
+/// Bytes of a message.
 template <class Message>
 [[nodiscard]] std::string encode(const Message& message) {
   WritingArchive archive;
@@ -291,7 +300,7 @@ template <class Message>
   return archive.bytes();
 }
 
-/// Message from its bytes; none if they are no such message, or an unsound one.
+/// Message from its bytes; none for other bytes, and for a message whose is_sound() is false.
 template <class Message>
 [[nodiscard]] std::optional<Message> decode(std::string_view bytes) {
   ReadingArchive archive{bytes};

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Roads in XML files of other programs: the document, and a reader for each dialect. Not installed.
 #pragma once
 
 #include <pugixml.hpp>
@@ -13,16 +14,16 @@
 
 namespace chicane::protocol {
 
-/// An XML document whose elements have no namespace prefix. This header is for our own sources and not
-/// installed.
+/// XML document whose elements have no namespace prefix.
 struct XmlDocument {
-  static constexpr std::size_t kMostBytes = std::size_t{32} << 20U;  ///< [byte]
+  // Chosen: bounds memory and stack.
+  static constexpr std::size_t kMostBytes = std::size_t{32} << 20U;  ///< limit of the text [byte]
   static constexpr std::ptrdiff_t kMostTags = 2'000'000;
-  static constexpr int kMostDepth = 64;
+  static constexpr int kMostDepth = 64;  ///< limit of nesting
 
-  std::string file;
+  std::string file;  ///< name of the file, for messages
   pugi::xml_document tree = {};
-  std::vector<std::ptrdiff_t> line_ends = {};
+  std::vector<std::ptrdiff_t> line_ends = {};  ///< positions of line breaks in the text
 
   [[nodiscard]] pugi::xml_node root() const { return tree.document_element(); }
   /// Line on which a node begins, from 1.
@@ -31,14 +32,14 @@ struct XmlDocument {
   [[nodiscard]] std::vector<pugi::xml_node> find_all(std::string_view name) const;
 };
 
-/// Parses a document of at most 32 MiB and 2,000,000 tags. Entities of its own are refused. kParse,
-/// "FILE:LINE: …", for text that is not XML, more tags or deeper nesting.
+/// Parses a document. Fails with kParse, "FILE:LINE: …", for text that is not XML, a text or nesting beyond
+/// the limits of XmlDocument, and entities that the document declares.
 [[nodiscard]] Result<XmlDocument> parse_xml(std::string_view text, const std::string& file);
 
-/// The finite number of an attribute; `otherwise` where there is none.
+/// Finite number of an attribute; `otherwise` if the node has none.
 [[nodiscard]] double number_at(pugi::xml_node node, const char* attribute, double otherwise = 0.0);
 
-/// A line on the earth, as a file has it.
+/// Line in geographic coordinates, as a file has it.
 struct GeoLine {
   GeoLine(const std::string& file, const TrackReadOptions& options, bool driven = false)
       : rows{file, options, {{"latitude", Column::kLatitude}, {"longitude", Column::kLongitude}}},
@@ -47,20 +48,20 @@ struct GeoLine {
 
   RoadRows rows;
   double width = 0.0;  ///< [m]; 0: not in the file
-  double most_noise;   ///< upper limit of the estimated standard deviation of the places [m]
+  double most_noise;   ///< upper limit of the estimated standard deviation of the points [m]
   bool is_driven;      ///< a log of driving, which may have several laps
 };
 
-/// The road in metres east and north of its middle: what stands still is left out, of a log the first lap
-/// taken.
+/// Road in metres east and north of the line's middle. Leaves out points of a car that stands still, and
+/// takes the first lap of a log.
 [[nodiscard]] Result<TrackFile> track_of_line(GeoLine line);
 
-/// Documents by their root element.
+// Roads of documents, by their root element.
 [[nodiscard]] Result<TrackFile> track_of_gpx(const XmlDocument& xml, const TrackReadOptions& options);
 [[nodiscard]] Result<TrackFile> track_of_kml(const XmlDocument& xml, const TrackReadOptions& options);
 [[nodiscard]] Result<TrackFile> track_of_osm(const XmlDocument& xml, const TrackReadOptions& options);
 [[nodiscard]] Result<TrackFile> track_of_opendrive(const XmlDocument& xml, const TrackReadOptions& options);
-/// Cones of a world of Gazebo.
+/// Road between the cones of a Gazebo world.
 [[nodiscard]] Result<TrackFile> track_of_sdf(const XmlDocument& xml, const TrackReadOptions& options);
 
 }  // namespace chicane::protocol

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Our own ROS 2 messages as lists of rows, from which bytes and definitions are made.
 #pragma once
 
 #include <array>
@@ -16,7 +17,7 @@ namespace chicane::protocol {
 using Numbers = std::vector<double>;
 using Texts = std::vector<std::string>;
 
-/// Rows as bytes.
+/// Visitor of rows that writes their values as bytes.
 class WrittenRows {
  public:
   void title(std::string_view /*text*/) {}
@@ -27,7 +28,7 @@ class WrittenRows {
   WritingArchive to_;
 };
 
-/// Rows that another program wrote.
+/// Visitor of rows that reads their values from bytes of another program.
 class ReadRows {
  public:
   explicit ReadRows(std::string_view bytes) : from_{bytes} {}
@@ -42,16 +43,19 @@ class ReadRows {
   ReadingArchive from_;
 };
 
-/// Rows as the definition of the message: meanings in one column.
+/// Visitor of rows that writes the definition of a message: a declaration in each line, and its meaning as a
+/// comment.
 class DefinedRows {
  public:
-  /// `width`: columns of the declarations.
+  /// `about`: sentence at the top; `width`: column at which meanings begin.
   explicit DefinedRows(std::string_view about, int width = 39);
+  /// Begins a group of rows.
   void title(std::string_view text);
   template <class Value>
   void operator()(std::string_view name, std::string_view meaning, const Value& value) {
     line(std::string(type_of(value)).append(" ").append(name), meaning);
   }
+  /// Adds a line: a field or a constant.
   void line(const std::string& declaration, std::string_view meaning);
   [[nodiscard]] const std::string& text() const { return text_; }
 
@@ -71,24 +75,26 @@ class DefinedRows {
   std::string text_;
 };
 
+/// Bytes of the rows that `rows_of` passes to a visitor.
 [[nodiscard]] std::string written(auto rows_of) {
   WrittenRows rows;
   rows_of(rows);
   return rows.bytes();
 }
 
-/// A message of chicane_msgs: a list of rows, name, meaning and value, from which its bytes and its
-/// definition are made.
+/// Message of chicane_msgs.
 struct OwnMessage {
   std::string_view name;   ///< "chicane_msgs/Run"
   std::string definition;  ///< text in ROS 2's .msg language
-  std::string (*encode)(const telemetry::Frame& frame, const Run& run) = nullptr;  ///< null: not of a frame
+  /// Bytes of the message for a frame of a run; null: the message is not made from frames.
+  std::string (*encode)(const telemetry::Frame& frame, const Run& run) = nullptr;
 };
 
+/// All messages of chicane_msgs.
 [[nodiscard]] const std::vector<OwnMessage>& own_messages();
 
 /// Road and car as foxglove_msgs/msg/SceneUpdate, for the 3D panels of Foxglove and Lichtblick: the road in
-/// `map`, the car in `base_link`, with which it moves. Nothing of it depends on the frame.
+/// the frame `map`, the car in `base_link`, with which it moves. The bytes do not depend on `frame`.
 [[nodiscard]] std::string encode_scene(const telemetry::Frame& frame, const Run& run);
 
 }  // namespace chicane::protocol

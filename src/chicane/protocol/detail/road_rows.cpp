@@ -16,8 +16,10 @@
 namespace chicane::protocol {
 namespace {
 
-constexpr double kLoopGap = 1.5;  // a loop's last gap is at most this times the longest other one
+// Limit of the gap from a closed road's last point to its first, over the longest other gap; chosen.
+constexpr double kLoopGap = 1.5;
 
+/// Allowed values of a column.
 struct Range {
   double least, most;
   std::string_view expected;
@@ -36,6 +38,7 @@ constexpr Range range_of(Column column) {
   }
 }
 
+/// Beginning of a message: "FILE:LINE: ", or "FILE: ".
 std::string place_of(std::string_view file, int line) {
   return line > 0 ? fmt::format("{}:{}: ", file, line) : fmt::format("{}: ", file);
 }
@@ -70,7 +73,7 @@ void reverse(TrackFile& content) {
   if (points.size() < 2) return;
   road::TrackOptions& options = content.options;
   const double length = survey::length_of(places_of(content), content.is_closed);
-  // A loop keeps its first point.
+  // The first point of a closed road stays the first.
   const auto first = content.is_closed ? 1 : 0;
   std::reverse(points.begin() + first, points.end());
   if (content.lines.size() == points.size()) std::reverse(content.lines.begin() + first, content.lines.end());

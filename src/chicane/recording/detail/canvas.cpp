@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Canvas for pictures: fills, strokes and a stroke font.
+// Canvas for pictures: a font of strokes, and shapes filled by the exact cover of each pixel.
 #include "chicane/recording/detail/canvas.hpp"
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 namespace chicane::recording {
 namespace {
 
-/// Lines between points of a grid, 0 to 4 to the right and 0 to 6 upwards: "04 44" is a stroke from (0, 4) to
-/// (4, 4), a comma lifts the pen.
+/// Letter as lines between points of a grid, 0 to 4 to the right and 0 to 6 upwards: "04 44" is a stroke from
+/// (0, 4) to (4, 4), a comma lifts the pen.
 struct Glyph {
   char letter;
   std::string_view path;
@@ -67,7 +67,7 @@ constexpr std::array kGlyphs{
     Glyph{')', "10 21 25 16"},
 };
 
-constexpr double kAcross = 0.15, kUp = 1.0 / 6.0;  // steps of the grid, in letter sizes
+constexpr double kAcross = 0.15, kUp = 1.0 / 6.0;  // steps of the grid, in sizes of letters; chosen
 
 }  // namespace
 
@@ -87,10 +87,13 @@ void for_each_stroke(char letter, const std::function<void(double, double, doubl
 
 namespace {
 
-constexpr double kAdvance = 0.82;  // step from letter to letter, in letter sizes
-constexpr double kStroke = 0.13;   // thickness of letters, in sizes
-constexpr int kDiscCorners = 24;   // corners of the polygon for a disc
+// Chosen.
+constexpr double kAdvance = 0.82;           // step from letter to letter, in sizes of letters
+constexpr double kStroke = 0.13;            // thickness of letters, in their sizes
+constexpr int kDiscCorners = 24;            // corners of the polygon that stands for a disc
+constexpr double kInvisible = 1.0 / 512.0;  // share below which a colour changes no byte
 
+/// Mixture of two bytes of colour, with `share` of the upper one.
 std::uint8_t mixed(std::uint8_t below, std::uint8_t above, double share) {
   return static_cast<std::uint8_t>(std::lround(below + share * (above - below)));
 }
@@ -113,7 +116,6 @@ void Canvas::clear(const Colour& colour) {
   }
 }
 
-/// Adds the signed area to the right of an edge, row by row: exact coverage of pixels by the sum along a row.
 void Canvas::add_edge(Vec2 from, Vec2 to) {
   if (!(std::isfinite(from.x() + from.y() + to.x() + to.y())) || from.y() == to.y()) return;
   const double sign = from.y() < to.y() ? 1.0 : -1.0;
@@ -134,7 +136,8 @@ void Canvas::add_edge(Vec2 from, Vec2 to) {
     const double left = std::min(x0, x1), right = std::max(x0, x1);
     float* const cells = &cover_[static_cast<std::size_t>(row * (width_ + 2))];
     const double height = sign * (y1 - y0);
-    // The share of `height` that lies left of each pixel's middle, spread evenly from left to right.
+    // Spread `height` over the pixels that the edge crosses in this row, by the area to its right in each of
+    // them.
     const int first = static_cast<int>(left), last = static_cast<int>(right);
     if (first == last) {
       const double covered = 1.0 - (0.5 * (left + right) - first);
@@ -161,7 +164,7 @@ void Canvas::paint(const Colour& colour) {
     for (int x = 0; x < width_; ++x) {
       sum += cells[x];
       const double share = std::min(std::fabs(static_cast<double>(sum)), 1.0) * colour.opacity;
-      if (share < 1.0 / 512.0) continue;
+      if (share < kInvisible) continue;
       std::uint8_t* const pixel = &bytes_[static_cast<std::size_t>(3 * (row * width_ + x))];
       pixel[0] = mixed(pixel[0], colour.red, share);
       pixel[1] = mixed(pixel[1], colour.green, share);
@@ -179,7 +182,6 @@ void Canvas::fill(const std::vector<std::vector<Vec2>>& rings, const Colour& col
   paint(colour);
 }
 
-/// A bar with half a thickness beyond both ends, always turned the same way.
 void Canvas::add_stroke(const Vec2& from, const Vec2& to, double thickness) {
   const Vec2 way = to - from;
   const double length = std::sqrt(way.x() * way.x() + way.y() * way.y());
@@ -198,7 +200,7 @@ void Canvas::line(std::span<const Vec2> points, double thickness, const Colour& 
 void Canvas::disc(const Vec2& centre, double radius, const Colour& colour) {
   std::vector<Vec2> ring;
   for (int i = 0; i < kDiscCorners; ++i) {
-    const double angle = 2.0 * 3.14159265358979323846 * i / kDiscCorners;
+    const double angle = 2.0 * kPi * i / kDiscCorners;
     ring.emplace_back(centre.x() + radius * cos(angle), centre.y() + radius * sin(angle));
   }
   fill({ring}, colour);

@@ -13,7 +13,8 @@
 namespace chicane::recording {
 namespace {
 
-constexpr int kMostDepth = 8;                     // limit of nested messages
+// Chosen: a recording may be forged.
+constexpr int kMostDepth = 8;                     // limit of messages within messages
 constexpr std::size_t kMostElements = 1U << 20U;  // limit of a list's elements
 
 }  // namespace
@@ -42,31 +43,18 @@ Result<RosReader> RosReader::create(std::string_view definition) {
   for (std::string line; std::getline(lines, line);) {
     line = line.substr(0, line.find('#'));
     std::istringstream words(line);
-    Field field;
-    if (!(words >> field.type)) continue;
-    if (field.type.starts_with("==")) continue;
-    if (field.type == "MSG:") {
-      words >> type;
+    std::string first, second, third;
+    words >> first >> second >> third;
+    if (first.empty() || first.starts_with("==")) continue;
+    if (first == "MSG:") {
+      if (!second.empty()) type = second;
       reader.types_[type];
       continue;
     }
-    words >> field.name;
-    std::string rest;
-    words >> rest;
-    if (field.name.find('=') != std::string::npos || rest.starts_with("=")) continue;  // a constant
-    // An array: "[]" is counted in the message, "[3]" is fixed.
-    if (const std::size_t open = field.type.find('['); open != std::string::npos) {
-      const std::string inside = field.type.substr(open + 1, field.type.find(']') - open - 1);
-      field.many = inside.empty() ? Field::Many::kCounted : Field::Many::kFixed;
-      field.count = 0;
-      for (const char digit : inside)
-        if (digit >= '0' && digit <= '9' && field.count < kMostElements)
-          field.count = 10 * field.count + static_cast<std::size_t>(digit - '0');
-      field.type.erase(open);
-    }
-    reader.types_[type].push_back(std::move(field));
+    if (second.find('=') != std::string::npos || third.starts_with("=")) continue;  // a constant
+    reader.types_[type].push_back(field_of(std::move(first), std::move(second)));
   }
-  // Every type that a field has must be defined.
+  // The types of all fields must be defined.
   for (const auto& [name, fields] : reader.types_) {
     for (const Field& field : fields) {
       const bool is_message =
@@ -76,6 +64,21 @@ Result<RosReader> RosReader::create(std::string_view definition) {
     }
   }
   return reader;
+}
+
+RosReader::Field RosReader::field_of(std::string type, std::string name) {
+  Field field{.type = std::move(type), .name = std::move(name)};
+  const std::size_t open = field.type.find('[');
+  if (open == std::string::npos) return field;
+  // An array: "[]" has its count in the message, "[3]" a fixed one.
+  const std::string inside = field.type.substr(open + 1, field.type.find(']') - open - 1);
+  field.many = inside.empty() ? Field::Many::kCounted : Field::Many::kFixed;
+  field.count = 0;
+  for (const char digit : inside)
+    if (digit >= '0' && digit <= '9' && field.count < kMostElements)
+      field.count = 10 * field.count + static_cast<std::size_t>(digit - '0');
+  field.type.erase(open);
+  return field;
 }
 
 bool RosReader::read_type(const std::string& type, const std::string& name, protocol::CdrSource& source,
@@ -102,7 +105,7 @@ bool RosReader::read_type(const std::string& type, const std::string& name, prot
   if (type == "int32") return keep(source.get<std::int32_t>());
   if (type == "uint64") return keep(source.get<std::uint64_t>());
   if (type == "int64") return keep(source.get<std::int64_t>());
-  // A message: its fields in turn.
+  // Any other type is a message: read its fields in turn.
   const auto fields = types_.find(type);
   if (fields == types_.end() || depth > kMostDepth) return false;
   for (const Field& field : fields->second) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Numbers and points as texts of messages.
 #pragma once
 
 #include <array>
@@ -9,8 +10,8 @@
 
 namespace chicane::road {
 
-/// A number as messages show it: shortest form that reads back the same, with a decimal point in every
-/// locale.
+/// Number in the shortest form that reads back the same, with a decimal point in every locale. Large round
+/// numbers have an exponent ("1e+07"), unlike those of base/text.hpp.
 inline std::string number_text(double value) {
   std::array<char, 32> text{};
   const std::to_chars_result end = std::to_chars(text.data(), text.data() + text.size(), value);

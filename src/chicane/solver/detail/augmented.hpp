@@ -26,7 +26,7 @@ template <class Row, class Factor, std::size_t... n>
 CHICANE_INLINE inline auto scaled(const Row& row, const Factor& factor, std::index_sequence<n...>) {
   return std::make_tuple(factor(n, std::get<n>(row))...);
 }
-/// map(n, entry) of each entry: a tuple, or an array where `row` is one.
+/// Row of map(n, entry) for each entry: a tuple, or an array if `row` is one.
 template <class Row, class Map>
 CHICANE_INLINE inline auto map_row(const Row& row, const Map& map) {
   return scaled(row, map, std::make_index_sequence<std::tuple_size_v<Row>>{});
@@ -52,9 +52,9 @@ CHICANE_INLINE inline std::array<T, N + M> join(const std::array<T, N>& a, const
 
 }  // namespace detail
 
-/// A problem whose equalities and terminal constraints are residuals √ρ (h + y/ρ) beside its own: its
-/// augmented Lagrangian, up to a constant (docs/solver.md, eq. 56). All other functions are the problem's
-/// own.
+/// Augmented Lagrangian of a problem, up to a constant (docs/solver.md, eq. 56): the problem with its
+/// equalities and terminal constraints as further residuals √ρ (h + y/ρ). All other functions are the
+/// problem's.
 template <HardProblem P, int Capacity>
 class Augmented {
  public:
@@ -69,7 +69,7 @@ class Augmented {
   static constexpr bool kHasSparseRows = solver::kHasSparseRows<P>;
 
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  /// One row that must hold: √ρ, ρ and y/ρ.
+  /// Weight of a hard row: √ρ and ρ.
   struct Weight {
     double root = 1.0;
     double rho = 1.0;
@@ -79,18 +79,19 @@ class Augmented {
     }
   };
   const P* problem = nullptr;
-  double cost_root = 1.0;  ///< root of the weight of the problem's own cost
-  std::array<Weight, kEqualities> equality_weight{};
-  std::array<StageData<Capacity>, kEqualities> equality_root{};  ///< root of the weight of each stage
-  std::array<StageData<Capacity>, kEqualities> equality_shift{};
-  std::array<Weight, kEndEqualities + kEndConstraints> terminal_weight{};
-  std::array<double, kEndEqualities + kEndConstraints> terminal_shift{};
-  std::array<double, kNc> penalty_factor{};  ///< factors of soft constraints, hard ones among them
-  double violation_penalty = 0.0;            ///< penalty on the violation of rows that must hold, if any
-  double limit_share = 1.0;                  ///< share of it that counts for limits of the stages
-  double hard_penalty = 0.0;    ///< replaces the hard ones' penalties, if any: so high that none is violated
+  double cost_root = 1.0;                             ///< root of the weight of the problem's own cost
+  std::array<Weight, kEqualities> equality_weight{};  ///< weights of the stages' equalities
+  std::array<StageData<Capacity>, kEqualities> equality_root{};   ///< roots of these weights for each stage
+  std::array<StageData<Capacity>, kEqualities> equality_shift{};  ///< y/ρ of the stages' equalities
+  std::array<Weight, kEndEqualities + kEndConstraints> terminal_weight{};  ///< weights at the end
+  std::array<double, kEndEqualities + kEndConstraints> terminal_shift{};   ///< y/ρ at the end
+  std::array<double, kNc> penalty_factor{};  ///< factors of the constraints' penalties
+  double violation_penalty = 0.0;            ///< penalty of violated hard rows in restoration; else 0
+  double limit_share = 1.0;     ///< share of violation_penalty for hard constraints of the stages
+  double hard_penalty = 0.0;    ///< penalty of hard constraints in the primal-dual method: none is violated
   bool is_primal_dual = false;  ///< rows in the form of the primal-dual method (detail/hard_rows.hpp)
 
+  /// Sets ρ of equality n for all stages.
   void set_weight(std::size_t n, double weight) noexcept {
     equality_weight[n].set(weight);
     equality_root[n].values.fill(equality_weight[n].root);
@@ -120,7 +121,7 @@ class Augmented {
     const auto own =
         detail::map_row(problem->terminal_residual(x),
                         [&](std::size_t, const auto& r) CHICANE_INLINE { return cost_root * r; });
-    return detail::join(detail::join(own, equalities_at_end(x)), constraints_at_end(x));
+    return with_constraints(with_equalities(own, x), x);
   }
   template <class K, class X, class U>
   requires(kNc > 0 && requires(const P& p, K k, const X& x, const U& u) { p.constraint(k, x, u); })
@@ -128,10 +129,12 @@ class Augmented {
     return problem->constraint(k, x, u);
   }
 
+  /// Whether constraint c is hard.
   [[nodiscard]] bool must_hold(std::size_t c) const noexcept {
     if constexpr (detail::SaysWhatIsHard<P>) return problem->is_hard(static_cast<int>(c));
     return false;
   }
+  /// Whether constraint c is hard and restoration is not at work.
   [[nodiscard]] bool keeps(std::size_t c) const noexcept { return violation_penalty == 0.0 && must_hold(c); }
   [[nodiscard]] std::size_t constraint_count() const noexcept { return solver::constraint_count(*problem); }
   [[nodiscard]] SoftPenalty soft_penalty(int c) const requires(kNc > 0) {
@@ -151,25 +154,27 @@ class Augmented {
   [[nodiscard]] auto input_upper(int k) const { return problem->input_upper(k); }
 
  private:
-  template <class X>
-  CHICANE_INLINE auto equalities_at_end(const X& x) const {
+  /// Residuals of the end, with those of its equalities.
+  template <class Row, class X>
+  CHICANE_INLINE auto with_equalities(const Row& row, const X& x) const {
     if constexpr (kEndEqualities > 0) {
-      return detail::map_row(problem->terminal_equality(x), [&](std::size_t n, const auto& h) CHICANE_INLINE {
-        return terminal_weight[n].root * (h + terminal_shift[n]);
-      });
+      const auto weighted = [&](std::size_t n, const auto& h)
+                                CHICANE_INLINE { return terminal_weight[n].root * (h + terminal_shift[n]); };
+      return detail::join(row, detail::map_row(problem->terminal_equality(x), weighted));
     } else {
-      return nothing(x);
+      return row;
     }
   }
-  template <class X>
-  CHICANE_INLINE auto constraints_at_end(const X& x) const {
+  /// Residuals of the end, with those of its inequalities.
+  template <class Row, class X>
+  CHICANE_INLINE auto with_constraints(const Row& row, const X& x) const {
     if constexpr (kEndConstraints > 0) {
-      return detail::map_row(problem->terminal_constraint(x), [&](std::size_t n,
-                                                                  const auto& g) CHICANE_INLINE {
+      const auto weighted = [&](std::size_t n, const auto& g) CHICANE_INLINE {
         return terminal_weight[kEndEqualities + n].root * active_part(g + terminal_shift[kEndEqualities + n]);
-      });
+      };
+      return detail::join(row, detail::map_row(problem->terminal_constraint(x), weighted));
     } else {
-      return nothing(x);
+      return row;
     }
   }
   /// Counted part of an inequality: all of it in the primal-dual method, else the part above zero.
@@ -180,15 +185,6 @@ class Augmented {
     } else {
       return select(value > (is_primal_dual ? -kInfinity : 0.0), value, 0.0);
     }
-  }
-  /// No entries, of the kind that goes with others.
-  template <class T, std::size_t N>
-  static std::array<T, 0> nothing(const std::array<T, N>&) {
-    return {};
-  }
-  template <class... T>
-  static std::tuple<> nothing(const std::tuple<T...>&) {
-    return {};
   }
 };
 

@@ -14,7 +14,7 @@
 
 namespace chicane::solver {
 
-/// The penalty of soft constraint `c`.
+/// Penalty of soft constraint `c`.
 template <OcpProblem P>
 [[nodiscard]] SoftPenalty penalty_of([[maybe_unused]] const P& problem,
                                      [[maybe_unused]] std::size_t c) noexcept {
@@ -22,8 +22,9 @@ template <OcpProblem P>
   return {};
 }
 
-/// All soft constraints of a horizon and their common barrier μ (docs/solver.md, eq. 14–21).
-/// Without constraints there is nothing to it.
+/// All soft constraints of a horizon, and their common barrier μ (docs/solver.md, eq. 14–21). Each has a
+/// slack s of violation with multiplier n, and a slack t of distance with multiplier z. Empty without
+/// constraints.
 template <OcpProblem P, std::size_t Capacity, class Arch>
 class Barrier {
  public:
@@ -32,20 +33,20 @@ class Barrier {
   using V = Stages<Arch>;
   using Step = Iterate<P::kNx, P::kNu, Capacity>;
 
-  /// Begins with a barrier in proportion to the penalties and to how far constraints are violated at the
-  /// start; it will end at `final_mu`.
+  /// Starts with a barrier in proportion to the penalties and to the violation at the start; its end is
+  /// `final_mu`.
   void start(const P& problem, double final_mu, double violation) noexcept {
-    constexpr double kLeast = 0.002;  // a start that keeps all constraints is likely to be a good one
-    constexpr double kMost = 2.0;
+    constexpr double kMost = 2.0;  // largest first barrier over the penalties; chosen
     final_ = final_mu;
     count_ = constraint_count(problem);
     mu_ = std::max(final_, highest_penalty(problem) * std::min(std::max(0.5 * violation, kLeast), kMost));
   }
-  /// Raises the barrier again: small slacks would leave a new start no room.
-  void lift(const P& problem) noexcept { mu_ = std::max(mu_, 0.002 * highest_penalty(problem)); }
+  /// Raises the barrier for a new start, to which small slacks would leave no room.
+  void lift(const P& problem) noexcept { mu_ = std::max(mu_, kLeast * highest_penalty(problem)); }
 
   [[nodiscard]] double mu() const noexcept { return mu_; }
   void set_mu(double mu) noexcept { mu_ = mu; }
+  /// Whether the barrier is at its end.
   [[nodiscard]] bool is_final() const noexcept { return count() == 0 || mu_ <= final_; }
   /// Number of active constraints: the first ones of kNc.
   [[nodiscard]] std::size_t count() const noexcept {
@@ -53,9 +54,10 @@ class Barrier {
     return kNc;
   }
 
-  /// Slacks, multipliers and barrier of one iterate, to come back to.
+  /// Slacks, multipliers and barrier of one iterate, for a return to it.
   struct Memory {
     double mu = 0.0;
+    /// Copies of s, t, n and z.
     double numbers[4][kNc > 0 ? kNc : 1][kStageStride<Capacity>]{};
   };
   void save(Memory& memory, std::size_t horizon) const noexcept {
@@ -75,7 +77,7 @@ class Barrier {
     }
   }
 
-  /// Constraints that must hold, whose slack is next to none, to their present penalties.
+  /// Adapts violation slacks and multipliers of hard constraints to their present penalties.
   void update_penalties(const P& problem, std::size_t horizon) noexcept {
     for (std::size_t c = 0; c < count(); ++c) {
       if (!problem.keeps(c)) continue;
@@ -87,7 +89,7 @@ class Barrier {
     }
   }
 
-  /// Constraints that need not hold lose their multipliers.
+  /// Sets the multipliers of constraints that are not hard to zero.
   void forget_soft(const P& problem) noexcept {
     for (std::size_t c = 0; c < count(); ++c) {
       if (!problem.must_hold(c)) std::fill(std::begin(z_[c]), std::end(z_[c]), 0.0);
@@ -106,7 +108,7 @@ class Barrier {
     soft.n.store(n_[c] + k);
     soft.z.store(z_[c] + k);
   }
-  /// Keeps its derivatives, for soft_change().
+  /// Keeps the derivatives of a constraint, for change().
   template <class J>
   CHICANE_INLINE void store_row(std::size_t c, std::size_t k, const J& constraint) noexcept {
     each_slope<V>(constraint,
@@ -144,7 +146,9 @@ class Barrier {
 
   /// Value of constraint c of stage k at the last linearisation.
   [[nodiscard]] double value(std::size_t c, std::size_t k) const noexcept { return value_[c][k]; }
+  /// Slack s of violation.
   [[nodiscard]] double violation_slack(std::size_t c, std::size_t k) const noexcept { return s_[c][k]; }
+  /// Slack t of distance.
   [[nodiscard]] double distance_slack(std::size_t c, std::size_t k) const noexcept { return t_[c][k]; }
   /// Multiplier of a constraint: cost saved by a unit of room.
   [[nodiscard]] double multiplier(std::size_t c, std::size_t k) const noexcept { return z_[c][k]; }
@@ -170,11 +174,13 @@ class Barrier {
     return sum;
   }
 
-  /// Moves slacks and multipliers along their Newton steps for a step of states and inputs, never beyond
-  /// 0.995 of the way to zero, or 1 − μ where that is more; returns the step length that the slacks allow.
+  /// Moves slacks and multipliers along their Newton steps for a step of states and inputs, by at most a
+  /// fraction of the way to zero: kFraction, or 1 − μ if that is more. Returns the step length that the
+  /// slacks permit.
   double step(const P& problem, const Step& step) noexcept {
     if constexpr (kNc == 0) return 1.0;
-    const double fraction = std::max(0.995, 1.0 - mu_);
+    constexpr double kFraction = 0.995;  // usual for the method
+    const double fraction = std::max(kFraction, 1.0 - mu_);
     V primal(0.0);  // longest change, in multiples of its value
     V dual(0.0);
     each(problem, step,
@@ -195,19 +201,20 @@ class Barrier {
     return length;
   }
 
-  /// Lowers the barrier after a full step, the faster the longer the slacks let it be, and the shorter the
-  /// longest move of an input was.
+  /// Lowers the barrier after a full step. It falls faster for a longer permitted step length, and for a
+  /// shorter longest move of an input. The factors were chosen.
   void lower(double length, double longest) noexcept {
-    constexpr double kNear = 0.1;  // change that counts as small
+    constexpr double kNear = 0.1;  // move of an input that counts as small; chosen
     const double least = longest <= kNear ? 0.01 : 0.1;
     const double share = length > 0.9 ? std::min(least, std::sqrt(mu_)) : (length > 0.5 ? 0.2 : 0.6);
     mu_ = std::max(final_, share * mu_);
   }
-  /// Lowers it after a descent step once the predicted gain is within the barrier's own gap.
+  /// Lowers the barrier after a descent step whose predicted gain is within the barrier's own gap.
   void lower_for_gain(double gain, std::size_t horizon) noexcept {
     if (gain < mu_ * static_cast<double>(horizon * count())) mu_ = std::max(final_, 0.2 * mu_);
   }
 
+  /// Whether a constraint is violated by more than its cap.
   bool exceeds_a_cap(const P& problem, std::size_t horizon) const noexcept {
     for (std::size_t c = 0; c < count(); ++c) {
       const double cap = penalty_of(problem, c).cap;
@@ -220,7 +227,10 @@ class Barrier {
 
  private:
   static constexpr std::size_t kStride = kStageStride<Capacity>;
+  /// Least first barrier over the penalties; chosen: a start that keeps all constraints is likely a good one.
+  static constexpr double kLeast = 0.002;
 
+  /// Scale of the barrier: the highest penalty.
   static double highest_penalty(const P& problem) noexcept {
     double penalty = 0.0;
     for (std::size_t c = 0; c < constraint_count(problem); ++c) {
@@ -229,25 +239,27 @@ class Barrier {
     return penalty;
   }
 
+  /// Calls visit(constraint, its Newton step, which stages are in the horizon, c, k) for all constraints of
+  /// eight stages at a time.
   template <class Visit>
   void each(const P& problem, const Step& step, const Visit& visit) noexcept {
     for (std::size_t k = 0; k < step.horizon; k += 8) {
-      const auto live =
-          stage_number(StageLanes<V>{static_cast<int>(k)}) < V(static_cast<double>(step.horizon));
+      const auto live = stages_before<V>(k, step.horizon);
       for (std::size_t c = 0; c < count(); ++c) {
         const SoftConstraint<V> soft = load(c, k);
         visit(soft, soft.step(penalty_of(problem, c), mu_, change(step, c, k)), live, c, k);
       }
     }
   }
-  double mu_ = 0.0;
-  double final_ = 0.0;
-  std::size_t count_ = kNc;
-  alignas(64) double value_[kNc > 0 ? kNc : 1][kStride]{};
-  alignas(64) double s_[kNc > 0 ? kNc : 1][kStride]{};
-  alignas(64) double t_[kNc > 0 ? kNc : 1][kStride]{};
-  alignas(64) double n_[kNc > 0 ? kNc : 1][kStride]{};
-  alignas(64) double z_[kNc > 0 ? kNc : 1][kStride]{};
+  double mu_ = 0.0;          ///< μ
+  double final_ = 0.0;       ///< end of μ
+  std::size_t count_ = kNc;  ///< count() of sparse problems
+  using Lines = double[kNc > 0 ? kNc : 1][kStride];
+  alignas(64) Lines value_{};                                  ///< values of the constraints
+  alignas(64) Lines s_{};                                      ///< slacks of violation
+  alignas(64) Lines t_{};                                      ///< slacks of distance
+  alignas(64) Lines n_{};                                      ///< multipliers of s
+  alignas(64) Lines z_{};                                      ///< multipliers of t
   alignas(64) double row_[kNc > 0 ? kNc : 1][kNz][kStride]{};  ///< Jacobian; zeros by type stay zero
 };
 

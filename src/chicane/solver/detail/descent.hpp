@@ -16,8 +16,8 @@
 
 namespace chicane::solver {
 
-/// Steps that lower the true cost every time: control-limited dynamic programming (Tassa, Mansard, Todorov
-/// 2014) with line search and Levenberg shift. Slower than full steps, and works from where those fail. The
+/// Steps each of which lowers the cost: control-limited dynamic programming (Tassa, Mansard, Todorov 2014)
+/// with line search and Levenberg shift. Slower than full steps; for points from which those fail. The
 /// iterates are simulations.
 template <OcpProblem P, std::size_t Capacity, class Arch>
 class Descent {
@@ -30,24 +30,24 @@ class Descent {
   using Slacks = Barrier<P, Capacity, Arch>;
   using Linearised = Linearisation<P, Capacity, Arch>;
 
-  /// A new solve.
+  /// Starts a solve.
   void start() noexcept {
     shift_ = 0.0;
     forget();
   }
-  /// Resets for a new horizon: experience with full steps is void.
+  /// Resets is_smooth() for a new horizon.
   void forget() noexcept { needed_ = 2; }
-  /// Descents begin here.
+  /// Starts a descent.
   void begin() noexcept { smooth_ = taken_ = 0; }
-  /// The last step led to values that are not finite.
+  /// Shortens steps, after one that led to values that are not finite.
   void damp() noexcept { shift_ = std::max(10.0 * shift_, 1.0); }
 
-  /// The longest move of an input in the last step.
+  /// Longest move of an input in the last step.
   [[nodiscard]] double moved() const noexcept { return moved_; }
-  /// Near enough to the solution for exact curvature.
+  /// Whether a few steps were taken, after which exact Hessians are of use.
   [[nodiscard]] bool is_under_way() const noexcept { return taken_ > 3; }
-  /// Whether whole unshifted steps were taken, so that full steps may be tried again. Each yes makes the next
-  /// one harder.
+  /// Whether enough whole unshifted steps were taken for another trial of full steps. Each trial doubles the
+  /// number for the next one.
   bool is_smooth() noexcept {
     if (smooth_ < needed_) return false;
     smooth_ = 0;
@@ -56,7 +56,7 @@ class Descent {
   }
 
   /// Simulates the trajectory with the gains as feedback, so that an unstable system stays near it. False,
-  /// and nothing changed, when that is not finite.
+  /// without a change, if that is not finite.
   bool simulate(const P& problem, Lq& lq, const Slacks& slacks, Point& t) noexcept {
     lq.backward(t.horizon, shift_, true);
     if (!std::isfinite(try_step(problem, t, lq, slacks, 0.0))) return false;
@@ -68,8 +68,10 @@ class Descent {
   /// the cost, or the deadline came first.
   bool step(const P& problem, const Linearised& now, Lq& lq, Slacks& slacks, Point& t,
             const Deadline& deadline, int& sweeps) noexcept {
-    constexpr int kAttempts = 12;  // trials with a larger shift each
-    constexpr int kHalvings = 6;   // trials of a shorter step each
+    constexpr int kAttempts = 12;        // trials with a larger shift each; chosen
+    constexpr int kHalvings = 6;         // trials of a shorter step each; chosen
+    constexpr double kArmijo = 1e-4;     // least share of the predicted descent; usual
+    constexpr double kRounding = 1e-13;  // rounding of a merit, relative
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
       ++sweeps;
       lq.backward(t.horizon, shift_, true);
@@ -79,7 +81,7 @@ class Descent {
       double length = 1.0;
       for (int trial = 0; trial < kHalvings; ++trial, length *= 0.5) {
         if (deadline.spent()) return false;
-        const double allowed = now.merit + 1e-4 * length * expected + 1e-13 * std::fabs(now.merit);
+        const double allowed = now.merit + kArmijo * length * expected + kRounding * std::fabs(now.merit);
         if (!(try_step(problem, t, lq, slacks, length) <= allowed)) continue;
         moved_ = longest_move(t, candidate_);
         t = candidate_;
@@ -147,12 +149,12 @@ class Descent {
     return sum;
   }
 
-  Point candidate_;
+  Point candidate_;     ///< point of the line search
   double shift_ = 0.0;  ///< Levenberg shift on the input blocks
-  double moved_ = 0.0;
-  int taken_ = 0;   ///< steps since the descent began
-  int smooth_ = 0;  ///< whole unshifted ones in a row
-  int needed_ = 2;  ///< count of them before full steps are tried again
+  double moved_ = 0.0;  ///< moved()
+  int taken_ = 0;       ///< steps since the descent began
+  int smooth_ = 0;      ///< whole unshifted steps in succession
+  int needed_ = 2;      ///< such steps before a trial of full steps
 };
 
 }  // namespace chicane::solver

@@ -16,9 +16,6 @@
 
 namespace chicane::solver {
 
-/// Calls the functions of a problem for eight stages and returns jets over packs, whatever its level:
-/// structured ones in lanes with a type for each variable; those that take lanes of one type likewise; others
-/// stage by stage.
 /// Value and all first derivatives of a row of a problem with many variables.
 template <class V, int Count>
 struct WideRow {
@@ -28,6 +25,9 @@ struct WideRow {
   std::array<V, 0> curvatures;
 };
 
+/// Calls the functions of a problem for eight stages and returns jets over packs. Structured problems are
+/// called with lanes and a type for each variable, problems whose functions take lanes of one type with that
+/// type, all others stage by stage.
 template <OcpProblem P, class Arch>
 class Evaluation {
  public:
@@ -43,6 +43,7 @@ class Evaluation {
   /// Scalar for values and derivatives of terminal residuals.
   using EndValue = std::conditional_t<kIsStructured, Pack<Arch, 2>, double>;
 
+  /// Results of the functions of a stage.
   template <class Next, class Residual, class Constraint>
   struct StageRows {
     Next next;
@@ -77,16 +78,18 @@ class Evaluation {
     return to_array<One>(problem.dynamics(static_cast<int>(k), x, u));
   }
 
+  /// Residuals that represent hard rows.
   static constexpr std::size_t kHardRows = static_cast<std::size_t>(P::kNr) - own_residuals<P>();
-  /// One stage, or one in each lane, without derivatives, for a line search.
+  /// Values of one stage, or of one in each lane, without derivatives, for a line search.
   template <class T>
   struct ValuesOf {
     T cost;                         ///< ½‖r‖² of the problem's own residuals
-    std::array<T, kHardRows> hard;  ///< the others
-    std::array<T, kNc> constraint;
-    std::array<T, kNx> next;
+    std::array<T, kHardRows> hard;  ///< residuals of hard rows
+    std::array<T, kNc> constraint;  ///< soft constraints
+    std::array<T, kNx> next;        ///< x_{k+1}
   };
   using Values = ValuesOf<V>;
+  /// Values of the stages k0 … k0 + 7.
   template <class Point>
   static Values values(const P& problem, const Point& t, std::size_t k0) noexcept {
     if constexpr (kIsStructured || kTakesLanes) {
@@ -115,7 +118,7 @@ class Evaluation {
       return result;
     }
   }
-  /// ½‖r‖² of the end; of the problem's own residuals alone with `hard`, which takes the others.
+  /// ½‖r‖² of the end. With `hard` only the problem's own residuals count; `hard` gets those of hard rows.
   template <class Point>
   static double end_cost(const P& problem, const Point& t, double* hard = nullptr) noexcept {
     double sum = 0.0;
@@ -147,7 +150,7 @@ class Evaluation {
     return worst;
   }
 
-  /// Terminal residuals; their values through number().
+  /// Terminal residuals with derivatives up to Order; number() gives their values.
   template <int Order, class Point>
   static auto end(const P& problem, const Point& t) noexcept {
     if constexpr (kIsSparse) {
@@ -175,7 +178,7 @@ class Evaluation {
 
  private:
   static constexpr bool kIsSparse = kHasSparseRows<P>;
-  /// Problems of many variables: derivatives by one block of them after the other.
+  /// Whether the variables are so many that derivatives are evaluated by blocks of variables.
   static constexpr bool kIsLarge = kVariables > static_cast<int>(kMostUnrolled);
   static constexpr int kBlocks = kIsLarge ? (kVariables + 15) / 16 : 1;
   static constexpr int kBlock = (kVariables + kBlocks - 1) / kBlocks;
@@ -190,7 +193,8 @@ class Evaluation {
   requires(Order >= 0 && kIsLarge) struct DenseOf<T, Order> {
     using Type = BlockJet<T>;
   };
-  /// Jets of fewer variables fit the registers: computing their zeros is quicker than finding them.
+  /// Least number of variables for jets that skip zeros. Jets of fewer fit the registers, and computing their
+  /// zeros is quicker.
   static constexpr int kFewestLoose = 5;
   template <class T, int Order>
   requires(Order == 2 && !kIsLarge && kVariables >= kFewestLoose &&
@@ -250,6 +254,7 @@ class Evaluation {
         rows[i].slopes[static_cast<std::size_t>(begin + j)] = from[i].slopes[static_cast<std::size_t>(j)];
     }
   }
+  /// Rows of the stages k0 … k0 + 7 by one call for each block of variables.
   template <class Point>
   static auto in_blocks(const P& problem, const Point& t, std::size_t k0) noexcept {
     StageRows<Rows<V, kNx>, Rows<V, P::kNr>, Rows<V, kNc>> all;
@@ -264,6 +269,7 @@ class Evaluation {
     return all;
   }
 
+  /// Values of stage k, or of one stage in each lane.
   template <class T, class K>
   static ValuesOf<T> values_of(const P& problem, K k, const std::array<T, kNx>& x,
                                const std::array<T, kNu>& u) noexcept {
@@ -276,6 +282,7 @@ class Evaluation {
     return values;
   }
 
+  /// Results of the functions for variables of any type.
   template <int Order, class K, class X, class U>
   CHICANE_INLINE static auto evaluate(const P& problem, K k, const X& x, const U& u) noexcept {
     if constexpr (kNc > 0) {
@@ -285,6 +292,7 @@ class Evaluation {
     }
   }
 
+  /// Variables of a structured problem, each of its own type.
   template <int Order, int Begin, int Count, class Values>
   CHICANE_INLINE static auto seeds(const Values& values, std::size_t k0) noexcept {
     detail::Seeds<V, Order, Begin, Count> result;
@@ -346,6 +354,7 @@ class Evaluation {
     }
   };
 
+  /// Rows of the stages k0 … k0 + 7 by one call for each stage.
   template <int Order, class Point>
   static auto one_by_one(const P& problem, const Point& t, std::size_t k0) noexcept {
     Gathered<Order, static_cast<std::size_t>(kNx)> next;

@@ -9,8 +9,8 @@ namespace chicane::solver {
 
 /// Quality of a point of the barrier problem: violation of its equations, and cost with barriers.
 struct Merit {
-  double miss = 0.0;
-  double cost = 0.0;  ///< `logs` times the barrier less than without
+  double miss = 0.0;  ///< sum of the violations
+  double cost = 0.0;  ///< cost less the barrier μ times `logs`
   double logs = 0.0;  ///< sum of the slacks' logarithms
   [[nodiscard]] bool is_finite() const noexcept { return std::isfinite(miss + cost); }
 };
@@ -34,7 +34,7 @@ class Filter {
     }
     return true;
   }
-  /// No later point may be as bad as `merit` in both, less a margin.
+  /// Excludes later points that are as bad as `merit` in both, less a margin.
   void add(const Merit& merit) noexcept {
     const Merit entry{(1.0 - kMissMargin) * merit.miss, merit.cost - kCostMargin * merit.miss};
     std::size_t kept = 0;
@@ -52,10 +52,10 @@ class Filter {
   }
 
  private:
-  static constexpr std::size_t kMost = 64;  ///< limit of entries
-  std::array<Merit, kMost> entry_{};
-  std::size_t count_ = 0;
-  double most_miss_ = 0.0;
+  static constexpr std::size_t kMost = 64;  ///< limit of entries; chosen
+  std::array<Merit, kMost> entry_{};        ///< pairs that exclude points
+  std::size_t count_ = 0;                   ///< used entries
+  double most_miss_ = 0.0;                  ///< upper limit of the miss
 };
 
 }  // namespace chicane::solver

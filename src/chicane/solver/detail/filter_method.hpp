@@ -44,14 +44,14 @@ class FilterMethod {
   using Slacks = Barrier<P, Capacity, Arch>;
   using Linearised = Linearisation<P, Capacity, Arch>;
   enum class Outcome {
-    kGoing,
-    kSolved,  ///< the problem of the last barrier, loosely: near the solution
-    kStuck,   ///< no step, no simulation helps
-    kSpent    ///< the deadline came first
+    kGoing,   ///< a step was taken
+    kSolved,  ///< the problem of the last barrier is solved, loosely: near the solution
+    kStuck,   ///< no step and no simulation helps
+    kSpent    ///< the deadline is spent
   };
 
-  /// Begins at `t`, whose inputs are moved off their bounds. The barrier will end at `final_mu` in the
-  /// problem's own unit of costs; it begins lower where `is_near` a solution.
+  /// Starts at `t`, whose inputs are moved off their bounds. The last barrier is `final_mu` in the problem's
+  /// unit of costs; the first one is lower if `is_near` a solution.
   void start(const P& problem, double final_mu, bool is_exact, bool is_near, Linearised& now, Lq& lq,
              Slacks& slacks, Point& t, SolveReport& report) noexcept {
     for (std::size_t m = 0; m < kNu; ++m) {
@@ -96,20 +96,19 @@ class FilterMethod {
     rows_lag_ = false;
     last_missed_ = 0.0;
   }
-  /// Hands rows that must hold to the method; call it before start(). They become equations of unknowns with
-  /// slacks and multipliers of their own, kept by the problem itself, `rows`. Null: they are residuals like
-  /// others.
+  /// Makes hard rows of the problem `rows` equations with slacks and multipliers, which the problem keeps.
+  /// Null: they are residuals like others. Call it before start().
   void take_rows(P* rows) noexcept { rows_ = rows; }
   [[nodiscard]] double mu() const noexcept { return mu_; }
-  /// Hands over the working set of the present point, and keeps the data to go on if that is not enough.
+  /// Hands the working set of the present point over to `lq`, and keeps what resume() needs.
   void hand_over(const Linearised& now, Lq& lq) noexcept {
     bounds_.choose_working_set(lq);
     for (std::size_t i = 0; i < kNx; ++i)
       std::copy(now.adjoint[i], now.adjoint[i] + candidate_.horizon, multipliers_[i]);
   }
-  /// Goes on with a lower barrier from where it left off. False when there is none.
+  /// Continues with a lower barrier from the point of hand_over(). False if the barrier cannot be lower.
   bool resume(Linearised& now, Slacks& slacks, Point& t, bool is_fresh) noexcept {
-    constexpr double kLeast = 1e-13;  // least barrier, in units of costs
+    constexpr double kLeast = 1e-13;  // least barrier, in the unit of costs; chosen
     if (final_mu_ <= kLeast * unit_) return false;
     final_mu_ = std::max(kLeast * unit_, 1e-2 * final_mu_);
     floor_ = {};
@@ -124,12 +123,12 @@ class FilterMethod {
   }
   /// Number of successive iterations, up to the last one, with a short step length.
   [[nodiscard]] int short_steps() const noexcept { return short_steps_; }
-  /// The longest move of an input in the last step that was taken.
+  /// Longest move of an input in the last step.
   [[nodiscard]] double moved() const noexcept { return moved_; }
-  /// The point where it stands; after start().
+  /// Present point; after start().
   [[nodiscard]] const Point& point() const noexcept { return candidate_; }
 
-  /// One linearisation and one step from t. Pre: `t` is as the last call left it.
+  /// Makes one linearisation and one step from t. Pre: `t` is unchanged since the last call.
   Outcome iterate(const P& problem, Linearised& now, Lq& lq, Slacks& slacks, Point& t,
                   const Deadline& deadline, SolveReport& report) noexcept {
     if constexpr (kHasHardRows<P>) {
@@ -174,23 +173,29 @@ class FilterMethod {
   }
 
  private:
-  static constexpr double kNearBarrier = 1e-3;  ///< first barrier near a solution
-  static constexpr double kFirstBarrier = 0.1;  ///< first barrier where gradients are at most kSteep
-  static constexpr double kSteep = 100.0;       ///< slope of costs that needs no scaling
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  static constexpr double kShort = 0.1;  ///< length of a short step
-  static constexpr int kShortInSuccession = 3, kMostLeaps = 4;
-  static constexpr double kRowWeight = 1e6;  ///< ρ of rows that must hold, and the penalty of hard limits, in
-  static constexpr double kHardPenalty = 1e6;                   ///< the unit of costs
-  static constexpr double kRise = 10.0, kMostRowWeight = 1e10;  ///< a weight rises where multipliers lag
-  static constexpr double kSolvedAt = 10.0;  ///< a barrier's problem is solved at this many times the barrier
-  static constexpr double kLooseFloor = 1e-2;  ///< the same at the last barrier of rows that must hold
-  static constexpr double kFloor = 1e-5;       ///< most that rounding may leave, in the unit of costs
+  // Chosen; kSteep, kSolvedAt and the barriers as usual for the method (Wächter, Biegler 2006).
+  static constexpr double kNearBarrier = 1e-3;  ///< first barrier near a solution
+  static constexpr double kFirstBarrier = 0.1;  ///< first barrier for gradients of at most kSteep
+  static constexpr double kSteep = 100.0;       ///< slope of costs up to which they need no scaling
+  static constexpr double kShort = 0.1;         ///< length up to which a step is short
+  static constexpr int kShortInSuccession =
+      3;                                       ///< short steps before a leap: a whole step without the filter
+  static constexpr int kMostLeaps = 4;         ///< limit of leaps
+  static constexpr double kRowWeight = 1e6;    ///< first weight ρ of hard rows, in the unit of costs
+  static constexpr double kHardPenalty = 1e6;  ///< penalty of hard constraints, in the unit of costs
+  static constexpr double kRise = 10.0;        ///< rise of a weight whose multipliers lag behind
+  static constexpr double kMostRowWeight = 1e10;  ///< largest weight of hard rows, in the unit of costs
+  static constexpr double kSolvedAt = 10.0;  ///< error over the barrier at which its problem counts as solved
+  static constexpr double kLooseFloor = 1e-2;  ///< largest error by rounding at the last barrier of hard rows
+  static constexpr double kFloor = 1e-5;       ///< largest error by rounding, in the unit of costs
 
+  /// Position of variable i of (x, u) in z = (x, 1, u).
   static constexpr std::size_t z(std::size_t i) noexcept { return i < kNx ? i : i + 1; }
 
   // ---- linearisation
 
+  /// Linearises with derivatives up to Order.
   template <int Order>
   void linearise(const P& problem, Linearised& now, Lq& lq, Slacks& slacks, const Point& t,
                  SolveReport& report) noexcept {
@@ -202,9 +207,9 @@ class FilterMethod {
     now.state_residual = nullptr;
     is_fresh_ = false;
   }
-  /// Rows that must hold begin on their central path.
+  /// Puts hard rows on their central path.
   void centre_rows(const P& problem, Linearised& now, const Point& t) noexcept;
-  /// Linearises, with exact Hessians once there are multipliers for them.
+  /// Linearises with exact Hessians, or Gauss–Newton's as long as there are no multipliers.
   void linearise(const P& problem, Linearised& now, Lq& lq, Slacks& slacks, const Point& t,
                  SolveReport& report) noexcept {
     if constexpr (has_hessians<P>()) {
@@ -213,37 +218,9 @@ class FilterMethod {
     linearise<1>(problem, now, lq, slacks, t, report);
   }
 
-  /// Distance from solving the barrier problem (eq. 34).
-  double residual(const Linearised& now, const Lq& lq, const Point& t, const SolveReport& report) noexcept {
-    if (!has_multipliers_) return std::numeric_limits<double>::infinity();
-    double dual = 0.0;
-    double dynamics_multipliers = 0.0;
-    for (std::size_t i = 0; i < kNx; ++i) {
-      for (std::size_t k = 1; k < t.horizon; ++k) {
-        dual = std::max(dual, std::fabs(residual_[i][k]));
-        dynamics_multipliers += std::fabs(now.adjoint[i][k]);
-      }
-      double end = lq.lq.terminal[kNx][i] - now.adjoint[i][t.horizon - 1];
-      if constexpr (kHasHardRows<P>) end -= rows_ != nullptr ? now.hard.excess(*rows_, i) : 0.0;
-      dual = std::max(dual, std::fabs(end));
-    }
-    for (std::size_t m = 0; m < kNu; ++m) {
-      for (std::size_t k = 0; k < t.horizon; ++k) {
-        if (lq.hold[k][m] == Hold::kFree)
-          dual = std::max(dual, std::fabs(now.slope[m][k] + bounds_.pull(k, m)));
-      }
-    }
-    const auto sides = bounds_.residual(mu_);
-    const double count = static_cast<double>(t.horizon * kNx) + sides.count;
-    const double scale =
-        std::max(kSteep, (dynamics_multipliers + sides.multipliers) / count / unit_) / kSteep;
-    double missed = report.defect * unit_;
-    if constexpr (kHasHardRows<P>) {
-      if (rows_ != nullptr) missed_ = now.hard.residual(*rows_, mu_, unit_, t.horizon);
-      if (rows_ != nullptr) missed = std::max(missed, missed_);
-    }
-    return std::max(std::max({dual, sides.product, report.complementarity}) / scale, missed);
-  }
+  /// Error of the barrier problem's optimality conditions (eq. 34).
+  double residual(const Linearised& now, const Lq& lq, const Point& t, const SolveReport& report) noexcept;
+  /// Lowers the barrier, and the merit of the present point with it.
   void lower_barrier(Slacks& slacks) noexcept {
     const double share = mu_ / unit_, last = mu_;
     mu_ = std::max(final_mu_, unit_ * std::min(0.2 * share, share * std::sqrt(share)));
@@ -253,8 +230,8 @@ class FilterMethod {
     floor_ = {};
   }
 
-  /// The linearisation of the present point with the barrier lowered from `last`: slopes alone change, by
-  /// what slacks pull (eq. 20, 53).
+  /// Updates the linearisation of the present point after the barrier was lowered from `last`: only slopes
+  /// change, by the forces of slacks (eq. 20, 53).
   void follow_barrier(const P& problem, double last, Linearised& now, Lq& lq, const Slacks& slacks,
                       std::size_t horizon) noexcept {
     slacks.each_pull(problem, last, horizon, [&](std::size_t k, std::size_t j, double pull) {
@@ -271,12 +248,14 @@ class FilterMethod {
 
   // ---- the step
 
+  /// Copies the gradients of the stage costs, before bounds add to them.
   void keep_gradient(const Lq& lq, std::size_t horizon) noexcept {
     for (std::size_t k = 0; k < horizon; ++k) {
       for (std::size_t i = 0; i < kNz; ++i) gradient_[k][i] = lq.lq.cost(k, z(i), Layout::kOne);
     }
   }
-  /// Shifts Hessians until the quadratic program is convex (eq. 33). False when it takes too much.
+  /// Factorises, with Hessians shifted until the quadratic program is convex (eq. 33). False if no shift
+  /// suffices.
   bool factorise(Lq& lq, std::size_t horizon, int& sweeps) noexcept {
     const double most = 1e10 * unit_;
     shift_ = forced_shift_;
@@ -310,12 +289,13 @@ class FilterMethod {
 
   // ---- the line search
 
-  /// Halves the step until the filter takes it; where that takes long, also along simulations that keep a
-  /// share of the defects.
+  /// Halves the step until the filter accepts it. After some trials simulations that keep a share of the
+  /// defects are tried, too.
   Outcome search(const P& problem, Linearised& now, const Lq& lq, Slacks& slacks, Point& t, const Merit& here,
                  const Deadline& deadline) noexcept {
-    constexpr int kPatience = 4;  // trials before a simulation is tried
-    const double fraction = std::max(0.99, 1.0 - mu_ / unit_);
+    constexpr int kPatience = 4;        // trials before a simulation is tried; chosen
+    constexpr double kFraction = 0.99;  // least share of the way of a slack to zero; usual for the method
+    const double fraction = std::max(kFraction, 1.0 - mu_ / unit_);
     const StepLengths own = bounds_.find(lq, step_, mu_, fraction);
     const StepLengths soft = soft_.find(problem, slacks, step_, fraction);
     double dual = std::min(own.dual, soft.dual);
@@ -330,14 +310,16 @@ class FilterMethod {
       }
     }
     const double least = least_length(here, slope);
-    // Short steps in succession: the filter hinders what would converge (Maratos). One whole step without it.
+    // After short steps in succession, which the filter causes where whole steps would converge (Maratos
+    // effect), one whole step is taken without the filter.
     const bool crawls = kHasHardRows<P> && short_steps_ >= kShortInSuccession && leaps_ < kMostLeaps;
     for (int trial = 0; trial == 0 || length >= least; ++trial, length *= 0.5) {
       if (deadline.spent()) return Outcome::kSpent;
       add_step<Arch>(t, length, step_, candidate_);
       Merit there = measure(problem, now, slacks, candidate_, length);
       bool is_good = is_acceptable(here, there, slope, length);
-      // A step whose second order opens defects (Maratos): the same direction without them.
+      // A step whose second order opens defects (Maratos effect) is simulated: the same direction without
+      // them.
       const bool opens_defects = kHasHardRows<P> && there.miss > here.miss;
       if (!is_good && (trial >= kPatience || opens_defects)) {
         const bool is_there = simulate(problem, lq, t, length);
@@ -371,8 +353,8 @@ class FilterMethod {
     last_shift_ = shift_;
     return recover(problem, lq, t);
   }
-  /// Acceptance by Wächter and Biegler: enough descent if the equations hold and the step promises it, else
-  /// less violation or less cost.
+  /// Whether a point is accepted by the rule of Wächter and Biegler: enough descent if the equations hold and
+  /// the step promises it, else less violation or less cost.
   bool is_acceptable(const Merit& here, const Merit& there, double slope, double length) noexcept {
     if (!filter_.accepts(there)) return false;
     const double rounding = 1e-13 * std::fabs(here.cost);
@@ -384,11 +366,11 @@ class FilterMethod {
     if (is_better) filter_.add(here);
     return is_better;
   }
-  /// The length from which on a step promises more cost than its miss is worth: miss^1.1 / (−slope)^2.3. Pre:
-  /// slope < 0.
+  /// Length from which on the descent of a step outweighs the miss: miss^1.1 / (−slope)^2.3. Pre: slope < 0.
   static double worth(double miss, double slope) noexcept {
     return miss > 0.0 ? exp(1.1 * log(miss) - 2.3 * log(-slope)) : 0.0;
   }
+  /// Least length that the line search tries.
   double least_length(const Merit& here, double slope) const noexcept {
     double least = Filter::kMissMargin;
     if (slope < 0.0) {
@@ -397,6 +379,7 @@ class FilterMethod {
     }
     return std::max(0.05 * least, 1e-10);
   }
+  /// Moves the multipliers of the dynamics by `length` of their direction.
   void take_multipliers(const Lq& lq, Linearised& now, std::size_t horizon, double length) noexcept {
     for (std::size_t k = 0; k < horizon; ++k) {
       for (std::size_t i = 0; i < kNx; ++i) {
@@ -406,12 +389,12 @@ class FilterMethod {
     }
   }
 
-  /// Miss and cost of `point` with the slacks at `length` of their direction (0: where they are). With
-  /// `from`, whose bounds are in `lq`: slacks of bounds as they are.
+  /// Merit of `point` with the slacks at `length` of their direction (0: at the present point). With `from`,
+  /// whose bounds are in `lq`, slacks of bounds are those of `point`.
   Merit measure(const P& problem, Linearised& now, const Slacks& slacks, const Point& point, double length,
                 const Lq* lq = nullptr, const Point* from = nullptr) noexcept;
 
-  /// Values of the end's rows that must hold, of their residuals.
+  /// Values of the hard rows of the end by their residuals.
   static auto unshifted(const P& problem, const double* residuals) noexcept {
     std::array<double, static_cast<std::size_t>(P::kNe) + 1> values{};
     if constexpr (kHasHardRows<P>) {
@@ -420,18 +403,19 @@ class FilterMethod {
     }
     return values;
   }
+  /// Values of the hard rows of the end at t.
   static auto end_rows(const P& problem, const Point& t) noexcept {
     double residuals[P::kNe + 1]{};
     Evaluate::end_cost(problem, t, residuals);
     return unshifted(problem, residuals);
   }
 
-  // ---- when no step is good
+  // ---- recovery when no step is accepted
 
   /// Recovers: first by a larger shift, then by new multipliers and slacks, then by a simulation, which has
-  /// no defects. Rows that must hold need restoration in its place.
+  /// no defects. With hard rows restoration follows instead of a simulation.
   Outcome recover(const P& problem, const Lq& lq, Point& t) noexcept {
-    constexpr int kMostSimulations = 8;  // limit in one solve
+    constexpr int kMostSimulations = 8;  // limit in one solve; chosen
     candidate_ = t;
     ++failures_;
     if (failures_ == 1) {
@@ -454,45 +438,49 @@ class FilterMethod {
     are_sides_new_ = true;
     return Outcome::kGoing;
   }
+  /// Simulates a step of `length` with its feedback; the rest of each defect stays.
   bool simulate(const P& problem, const Lq& lq, const Point& t, double length) noexcept {
     return simulate(problem, lq, t, 1.0, length, 1.0 - length);
   }
-  /// candidate_ by simulation: inputs of t, with `feedback` times the gains and `length` of the step's
-  /// constant part, cut to 0.99 of the way to their bounds; a share `kept` of each defect stays. False when
-  /// that is not finite.
+  /// Simulates candidate_: inputs of t, with `feedback` times the gains and `length` of the step's constant
+  /// part, cut to 0.99 of the way to their bounds; a share `kept` of each defect stays. False if it is not
+  /// finite.
   bool simulate(const P& problem, const Lq& lq, const Point& t, double feedback, double length,
                 double kept = 0.0) noexcept;
 
-  Bounds bounds_;
-  SoftSteps<P, Capacity, Arch> soft_;
+  Bounds bounds_;                      ///< slacks of the inputs' bounds
+  SoftSteps<P, Capacity, Arch> soft_;  ///< directions of the soft constraints' slacks
   Filter filter_;
-  Point step_;
+  Point step_;       ///< step of the quadratic program
   Point candidate_;  ///< point of the line search; between iterations the present one
-  alignas(64) double residual_[kNx][kStageStride<Capacity>]{};  ///< optimality in the states
-  double multipliers_[kNx][Capacity]{};                         ///< multipliers at the last hand-over
+  alignas(64) double residual_[kNx][kStageStride<Capacity>]{};  ///< residual of optimality in the states
+  double multipliers_[kNx][Capacity]{};                         ///< multipliers at the last hand_over()
   double gradient_[Capacity][kNz]{};                            ///< gradients of the stage costs
-  double mu_ = kFirstBarrier;
-  double final_mu_ = 1e-6;
-  double unit_ = 1.0;        ///< unit of costs
-  double small_miss_ = 0.0;  ///< below it the cost has to fall
-  double shift_ = 0.0;       ///< shift of this iteration's Hessians
-  double last_shift_ = 0.0;
-  double forced_shift_ = 0.0;     ///< least shift of the next iteration
-  bool is_exact_ = true;          ///< Hessians
-  bool has_multipliers_ = false;  ///< multipliers of the dynamics are known
-  bool is_fresh_ = true;          ///< the slacks of soft constraints go to their central path
-  bool is_new_barrier_ = true;    ///< the filter is of another problem
-  bool are_sides_new_ = true;     ///< the slacks of bounds do not belong to the present point
-  int short_steps_ = 0;           ///< count in succession
-  int leaps_ = 0;                 ///< whole steps that the filter had refused
+  double mu_ = kFirstBarrier;                                   ///< present barrier
+  double final_mu_ = 1e-6;                                      ///< last barrier
+  double unit_ = 1.0;                                           ///< unit of costs
+  double small_miss_ = 0.0;                                     ///< miss up to which the cost has to fall
+  double shift_ = 0.0;                                          ///< shift of this iteration's Hessians
+  double last_shift_ = 0.0;                                     ///< last shift that was needed
+  double forced_shift_ = 0.0;                                   ///< least shift of the next iteration
+  bool is_exact_ = true;                                        ///< whether Hessians are exact
+  bool has_multipliers_ = false;  ///< whether multipliers of the dynamics are known
+  bool is_fresh_ = true;          ///< whether the slacks of soft constraints go to their central path
+  bool is_new_barrier_ = true;    ///< whether the filter belongs to another barrier
+  bool are_sides_new_ = true;     ///< whether the slacks of bounds belong to another point
+  int short_steps_ = 0;           ///< short steps in succession
+  int leaps_ = 0;                 ///< whole steps without the filter
   FloorWatch floor_;
-  P* rows_ = nullptr;  ///< the problem, where its rows that must hold are unknowns' equations
-  double moved_ = 0.0, length_ = 0.0, missed_ = 0.0, last_missed_ = 0.0;
-  bool rows_lag_ = false;
+  P* rows_ = nullptr;           ///< take_rows()
+  double moved_ = 0.0;          ///< moved()
+  double length_ = 0.0;         ///< length of the last step
+  double missed_ = 0.0;         ///< residual of the hard rows
+  double last_missed_ = 0.0;    ///< residual of the hard rows one iteration before
+  bool rows_lag_ = false;       ///< whether the hard rows' residual is the largest and hardly falls
   Merit here_{};                ///< merit of the present point
-  bool is_here_known_ = false;  ///< here_ was set by the line search that found the point
-  int failures_ = 0;
-  int simulations_ = 0;
+  bool is_here_known_ = false;  ///< whether the line search has set here_
+  int failures_ = 0;            ///< recoveries without progress since
+  int simulations_ = 0;         ///< simulations in this solve
 };
 
 }  // namespace chicane::solver

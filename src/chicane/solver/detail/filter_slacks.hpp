@@ -15,15 +15,17 @@
 
 namespace chicane::solver {
 
-/// Longest step that keeps slacks and multipliers positive.
+// Slacks and multipliers of the filter method: those of bounds on inputs, and those of soft constraints.
+
+/// Longest steps that keep slacks (primal) and multipliers (dual) positive.
 struct StepLengths {
   double primal = 1.0;
   double dual = 1.0;
 };
 
-/// The bounds on inputs as barriers (docs/solver.md, eq. 30–33): each has a slack
-/// t > 0 and a multiplier z > 0, kept from iterate to iterate of the nonlinear problem. Eight stages at a
-/// time; what does not exist has z = 0 and t = 1, and counts for nothing.
+/// Bounds on inputs as barriers (docs/solver.md, eq. 30–33). Each bound has a slack t > 0 and a multiplier z
+/// > 0, kept from iterate to iterate of the nonlinear problem. Eight stages at a time; a bound that does not
+/// exist has z = 0 and t = 1, which have no effect.
 template <class Solver, std::size_t Capacity, class Arch>
 class BoundBarrier {
  public:
@@ -32,8 +34,8 @@ class BoundBarrier {
   using Layout = typename Solver::Layout;
   using V = Stages<Arch>;
 
-  /// Slacks of the bounds as they are in `qp` at the present iterate, at least `push` of their width;
-  /// multipliers on the central path of `mu`. Inputs whose bounds are equal are held there.
+  /// Starts at the bounds in `qp`, which belong to the present iterate: slacks at least a share kPush of the
+  /// width, multipliers on the central path of `mu`. Inputs whose bounds are equal are held there.
   void start(Solver& qp, std::size_t horizon, double mu) noexcept {
     horizon_ = horizon;
     count_ = 0;
@@ -64,16 +66,16 @@ class BoundBarrier {
     return std::min(std::max(u, low + push), high - push);
   }
 
-  /// Largest of the multipliers' conditions at the present iterate for barrier `mu`.
   struct Residual {
-    double product = 0.0;
-    double multipliers = 0.0;  ///< sum of all
-    int count = 0;
+    double product = 0.0;      ///< largest |t z − μ|
+    double multipliers = 0.0;  ///< sum of the multipliers
+    int count = 0;             ///< number of bounds
   };
+  /// Residual of complementarity at the present iterate for barrier `mu`.
   [[nodiscard]] Residual residual(double mu) const noexcept {
     V product(0.0);
     V multipliers(0.0);
-    each([&](std::size_t, Kind, const Side& side, std::size_t k, const auto& exists) {
+    each(*this, [&](std::size_t, Kind, const Side& side, std::size_t k, const auto& exists) {
       const V z = V::load(side.z + k);
       product = max(product, select(exists, abs(V::load(side.t + k) * z - mu), V(0.0)));
       multipliers += z;
@@ -88,7 +90,7 @@ class BoundBarrier {
   }
   /// Adds z + μ/t − D·bound and D = z/t to the stages (eq. 31).
   void add_to(Solver& qp, double mu) const noexcept {
-    each([&](std::size_t m, Kind kind, const Side& side, std::size_t k0, const auto& exists) {
+    each(*this, [&](std::size_t m, Kind kind, const Side& side, std::size_t k0, const auto& exists) {
       const V z = V::load(side.z + k0), t = V::load(side.t + k0);
       alignas(64) double D[8], g[8];
       (z / t).store(D);
@@ -105,13 +107,13 @@ class BoundBarrier {
     });
   }
 
-  /// The directions that belong to a step from the present iterate, whose bounds are in `qp`; how far they
-  /// may be followed.
+  /// Finds the directions for a step from the present iterate, whose bounds are in `qp`, and their longest
+  /// lengths.
   template <class Step>
   StepLengths find(const Solver& qp, const Step& step, double mu, double fraction) noexcept {
     V primal(0.0);
     V dual(0.0);
-    each([&](std::size_t m, Kind kind, Side& side, std::size_t k, const auto& exists) {
+    each(*this, [&](std::size_t m, Kind kind, Side& side, std::size_t k, const auto& exists) {
       const V value = V::load(step.u[m] + k);
       const V t = V::load(side.t + k), z = V::load(side.z + k);
       const V bound = bounds_of(qp, k, m, kind);
@@ -130,7 +132,7 @@ class BoundBarrier {
   /// Slope of the barriers along the direction.
   [[nodiscard]] double slope(double mu) const noexcept {
     V total(0.0);
-    each([&](std::size_t, Kind, const Side& side, std::size_t k, const auto&) {
+    each(*this, [&](std::size_t, Kind, const Side& side, std::size_t k, const auto&) {
       total -= V::load(side.dt + k) / V::load(side.t + k);
     });
     return mu * sum(total);
@@ -139,7 +141,7 @@ class BoundBarrier {
   void measure(double length, Merit& merit) noexcept {
     V misses(0.0);
     V logs(0.0);
-    each([&](std::size_t, Kind, Side& side, std::size_t k, const auto&) {
+    each(*this, [&](std::size_t, Kind, Side& side, std::size_t k, const auto&) {
       V at = V::load(side.t + k);
       if (length > 0.0) at += length * V::load(side.dt + k);
       at.store(side.at + k);
@@ -149,12 +151,12 @@ class BoundBarrier {
     merit.miss += (1.0 - length) * sum(misses);
     merit.logs += sum(logs);
   }
-  /// The same at another point than the step's, from where the bounds in `qp` are of.
+  /// Adds miss and logarithms at another point than the step's; the bounds in `qp` belong to `from`.
   template <class Point>
   void measure_at(const Solver& qp, const Point& point, const Point& from, Merit& merit) noexcept {
     V misses(0.0);
     V logs(0.0);
-    each([&](std::size_t m, Kind kind, Side& side, std::size_t k, const auto& exists) {
+    each(*this, [&](std::size_t m, Kind kind, Side& side, std::size_t k, const auto& exists) {
       const V moved = V::load(point.u[m] + k) - V::load(from.u[m] + k);
       const V distance = bounds_of(qp, k, m, kind) - sign(kind) * moved;
       const V at = select(exists, max(distance, 1e-3 * V::load(side.t + k)), V(1.0));
@@ -167,8 +169,8 @@ class BoundBarrier {
   }
   /// Moves to the point of the last measure(); multipliers by `dual_length` of their direction.
   void move(double dual_length, double mu) noexcept {
-    constexpr double kFar = 1e10;  // range of z around μ / t, as a factor
-    each([&](std::size_t, Kind, Side& side, std::size_t k, const auto& exists) {
+    constexpr double kFar = 1e10;  // largest factor between z and μ / t; usual for the method
+    each(*this, [&](std::size_t, Kind, Side& side, std::size_t k, const auto& exists) {
       const V t = V::load(side.at + k);
       const V z = V::load(side.z + k) + dual_length * V::load(side.dz + k);
       t.store(side.t + k);
@@ -176,9 +178,9 @@ class BoundBarrier {
     });
   }
 
-  /// Bounds at a thousandth of their width or less become the working set of `qp`.
+  /// Puts inputs near a bound into the working set of `qp`.
   void choose_working_set(Solver& qp) const noexcept {
-    constexpr double kActive = 1e-3;  // share of the width that counts as at the bound
+    constexpr double kActive = 1e-3;  // distance over the width that counts as at the bound; chosen
     for (std::size_t k = 0; k < horizon_; ++k) {
       for (std::size_t m = 0; m < kNu; ++m) {
         if (!has_width(qp, k, m)) continue;
@@ -195,16 +197,16 @@ class BoundBarrier {
 
  private:
   static constexpr std::size_t kStride = padded_stages(Capacity);
-  static constexpr double kPush = 1e-2;  ///< share of the width
-  static constexpr double kWide = 1e2;
+  static constexpr double kPush = 1e-2;  ///< least first slack over the width; usual for the method
+  static constexpr double kWide = 1e2;   ///< largest width that counts for it; chosen
   enum Kind : std::size_t { kLow, kHigh, kKinds };
   /// One bound of one input, stage after stage.
   struct alignas(64) Side {
-    double t[kStride]{}, z[kStride]{};
-    double dt[kStride]{}, dz[kStride]{};
-    double at[kStride]{};  ///< slack of a trial
-    double miss[kStride]{};
-    double exists[kStride]{};  ///< 1, else 0
+    double t[kStride]{}, z[kStride]{};    ///< slack and multiplier
+    double dt[kStride]{}, dz[kStride]{};  ///< their directions
+    double at[kStride]{};                 ///< slack of a trial
+    double miss[kStride]{};               ///< distance to the bound less the slack
+    double exists[kStride]{};             ///< 1 for a bound that exists, else 0
   };
   static constexpr double sign(Kind kind) noexcept { return kind == kHigh ? 1.0 : -1.0; }
   /// Bounds of input m in direction `kind`, of the stages from k on.
@@ -225,7 +227,7 @@ class BoundBarrier {
   }
   /// Calls visit(input, kind, side, stage, which of the eight from it on exist).
   template <class Self, class Visit>
-  static void visit_all(Self& self, const Visit& visit) noexcept {
+  static void each(Self& self, const Visit& visit) noexcept {
     for (std::size_t m = 0; m < kNu; ++m) {
       for (std::size_t n = 0; n < kKinds; ++n) {
         auto& side = self.side_[m][n];
@@ -234,22 +236,14 @@ class BoundBarrier {
       }
     }
   }
-  template <class Visit>
-  void each(const Visit& visit) const noexcept {
-    visit_all(*this, visit);
-  }
-  template <class Visit>
-  void each(const Visit& visit) noexcept {
-    visit_all(*this, visit);
-  }
 
   Side side_[kNu][kKinds]{};
-  std::size_t horizon_ = 0;
-  int count_ = 0;
+  std::size_t horizon_ = 0;  ///< stages
+  int count_ = 0;            ///< bounds that exist
 };
 
-/// Directions of the slacks and multipliers of a barrier's soft constraints, to be followed by as much as a
-/// line search finds good (docs/solver.md, eq. 18–20).
+/// Directions of the slacks and multipliers of soft constraints, for a line search (docs/solver.md, eq.
+/// 18–20).
 template <OcpProblem P, std::size_t Capacity, class Arch>
 class SoftSteps {
  public:
@@ -266,8 +260,7 @@ class SoftSteps {
     V slope(0.0);
     const double mu = slacks.mu();
     for (std::size_t k = 0; k < step.horizon; k += 8) {
-      const auto live =
-          stage_number(StageLanes<V>{static_cast<int>(k)}) < V(static_cast<double>(step.horizon));
+      const auto live = stages_before<V>(k, step.horizon);
       for (std::size_t c = 0; c < slacks.count(); ++c) {
         const SoftPenalty penalty = penalty_of(problem, c);
         const SoftConstraint<V> soft = slacks.load(c, k);
@@ -302,7 +295,7 @@ class SoftSteps {
     if (length > 0.0) {
       s += length * V::load(s_[c] + k);
       t += length * V::load(t_[c] + k);
-      t = select(s - value > t, s - value, t);  // more room costs nothing
+      t = select(s - value > t, s - value, t);  // a larger slack of distance costs nothing
     }
     s.store(s_at_[c] + k);
     t.store(t_at_[c] + k);
@@ -312,7 +305,7 @@ class SoftSteps {
   }
   /// Moves to the point of the last measure(); multipliers by `dual_length` of their direction.
   void move(Slacks& slacks, std::size_t horizon, double dual_length) noexcept {
-    constexpr double kFar = 1e10;  // range of multipliers around the central path
+    constexpr double kFar = 1e10;  // largest factor between a multiplier and the central path's; usual
     const double mu = slacks.mu();
     for (std::size_t k = 0; k < horizon; k += 8) {
       for (std::size_t c = 0; c < slacks.count(); ++c) {
@@ -330,13 +323,10 @@ class SoftSteps {
 
  private:
   static constexpr std::size_t kStride = kStageStride<Capacity>;
-  alignas(64) double s_[kNc > 0 ? kNc : 1][kStride]{};
-  alignas(64) double t_[kNc > 0 ? kNc : 1][kStride]{};
-  alignas(64) double s_at_[kNc > 0 ? kNc : 1][kStride]{};
-  alignas(64) double t_at_[kNc > 0 ? kNc : 1][kStride]{};
-  alignas(64) double z_[kNc > 0 ? kNc : 1][kStride]{};
-  alignas(64) double n_[kNc > 0 ? kNc : 1][kStride]{};
-  double slope_ = 0.0;
+  using Lines = double[kNc > 0 ? kNc : 1][kStride];
+  alignas(64) Lines s_{}, t_{}, s_at_{}, t_at_{};  ///< directions of the slacks, slacks of a trial
+  alignas(64) Lines z_{}, n_{};                    ///< directions of the multipliers
+  double slope_ = 0.0;                             ///< slope()
 };
 
 }  // namespace chicane::solver

@@ -8,7 +8,39 @@
 
 namespace chicane::solver {
 
-// Trial points of the filter method: their violation and cost, and points by simulation.
+// Points of the filter method: error of an iterate, merit of a trial point, and points by simulation.
+
+template <OcpProblem P, std::size_t Capacity, class Arch>
+double FilterMethod<P, Capacity, Arch>::residual(const Linearised& now, const Lq& lq, const Point& t,
+                                                 const SolveReport& report) noexcept {
+  if (!has_multipliers_) return std::numeric_limits<double>::infinity();
+  double dual = 0.0;
+  double dynamics_multipliers = 0.0;
+  for (std::size_t i = 0; i < kNx; ++i) {
+    for (std::size_t k = 1; k < t.horizon; ++k) {
+      dual = std::max(dual, std::fabs(residual_[i][k]));
+      dynamics_multipliers += std::fabs(now.adjoint[i][k]);
+    }
+    double end = lq.lq.terminal[kNx][i] - now.adjoint[i][t.horizon - 1];
+    if constexpr (kHasHardRows<P>) end -= rows_ != nullptr ? now.hard.excess(*rows_, i) : 0.0;
+    dual = std::max(dual, std::fabs(end));
+  }
+  for (std::size_t m = 0; m < kNu; ++m) {
+    for (std::size_t k = 0; k < t.horizon; ++k) {
+      if (lq.hold[k][m] == Hold::kFree)
+        dual = std::max(dual, std::fabs(now.slope[m][k] + bounds_.pull(k, m)));
+    }
+  }
+  const auto sides = bounds_.residual(mu_);
+  const double count = static_cast<double>(t.horizon * kNx) + sides.count;
+  const double scale = std::max(kSteep, (dynamics_multipliers + sides.multipliers) / count / unit_) / kSteep;
+  double missed = report.defect * unit_;
+  if constexpr (kHasHardRows<P>) {
+    if (rows_ != nullptr) missed_ = now.hard.residual(*rows_, mu_, unit_, t.horizon);
+    if (rows_ != nullptr) missed = std::max(missed, missed_);
+  }
+  return std::max(std::max({dual, sides.product, report.complementarity}) / scale, missed);
+}
 
 template <OcpProblem P, std::size_t Capacity, class Arch>
 Merit FilterMethod<P, Capacity, Arch>::measure(const P& problem, [[maybe_unused]] Linearised& now,
@@ -18,8 +50,7 @@ Merit FilterMethod<P, Capacity, Arch>::measure(const P& problem, [[maybe_unused]
   V miss(0.0);
   V logs(0.0);
   for (std::size_t k = 0; k < point.horizon; k += 8) {
-    const auto live =
-        stage_number(StageLanes<V>{static_cast<int>(k)}) < V(static_cast<double>(point.horizon));
+    const auto live = stages_before<V>(k, point.horizon);
     const auto values = Evaluate::values(problem, point, k);
     cost += select(live, values.cost, V(0.0));
     for (std::size_t c = 0; c < slacks.count(); ++c)
@@ -38,16 +69,10 @@ Merit FilterMethod<P, Capacity, Arch>::measure(const P& problem, [[maybe_unused]
     }
   }
   Merit merit{sum(miss), sum(cost), sum(logs)};
+  double ends[P::kNe + 1];
+  merit.cost += Evaluate::end_cost(problem, point, rows_ != nullptr ? ends : nullptr);
   if constexpr (kHasHardRows<P>) {
-    if (rows_ != nullptr) {
-      double ends[P::kNe + 1];
-      merit.cost += Evaluate::end_cost(problem, point, ends);
-      now.hard.measure_end(unshifted(problem, ends), length, merit);
-    } else {
-      merit.cost += Evaluate::end_cost(problem, point);
-    }
-  } else {
-    merit.cost += Evaluate::end_cost(problem, point);
+    if (rows_ != nullptr) now.hard.measure_end(unshifted(problem, ends), length, merit);
   }
   if (from == nullptr) {
     bounds_.measure(length, merit);
@@ -76,7 +101,7 @@ template <OcpProblem P, std::size_t Capacity, class Arch>
 bool FilterMethod<P, Capacity, Arch>::simulate(const P& problem, const Lq& lq, const Point& t,
                                                double feedback, double length, double kept) noexcept {
   using One = typename Evaluate::One;
-  constexpr double kShare = 0.99;  // share of the way to a bound
+  constexpr double kShare = 0.99;  // largest share of the way to a bound; chosen
   candidate_.horizon = t.horizon;
   for (std::size_t i = 0; i < kNx; ++i) candidate_.x[i][0] = t.x[i][0];
   for (std::size_t k = 0; k < t.horizon; ++k) {

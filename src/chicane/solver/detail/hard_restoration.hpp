@@ -12,14 +12,16 @@
 
 namespace chicane::solver {
 
-// The primal-dual method of the solver of HardProblems, and restoration where that fails.
+// HardSolver's use of the primal-dual method, and restoration, which finds a feasible point or proves that
+// there is none nearby.
 
-/// The primal-dual method (eq. 50–54). True if it reached the end of its barrier: multipliers and penalties
+/// The primal-dual method (eq. 50–54). True if it reaches the end of its barrier: multipliers and penalties
 /// are then those of its point, and full steps may continue from there.
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::follow(Begin begin, const State& x0, Trajectory& trajectory,
                                            const Deadline& deadline, int& left, HardReport& report) noexcept {
-  constexpr double kDearer = 4.0;  // factor over the highest multiplier: the constraint is kept
+  constexpr double kDearer =
+      4.0;  // penalty over the highest multiplier, so that the constraint holds; chosen
   SolveReport seen;
   inner_.ask_for(round_tolerance());
   const bool is_solved =
@@ -39,22 +41,28 @@ bool HardSolver<P, Capacity, Arch>::follow(Begin begin, const State& x0, Traject
   point_multipliers_ = multipliers_;
   return can_go_on_ = true;
 }
-/// Restoration: the primal-dual method with elastic rows and `share` of the cost, less and less of it down
-/// to almost none (docs/solver.md, eq. 55); that is repeated as long as a small share of the violation is
-/// left. True if a minimum above zero is proven: `trajectory` is there. Else it is the point found.
+/// Restoration (docs/solver.md, eq. 55): the primal-dual method with elastic rows. A share of the cost counts
+/// at first, `share`, and falls to almost none; the last step is repeated as long as it leaves a small share
+/// of the violation. True if a minimum of the violation above zero is proven; `trajectory` is there, else at
+/// the point found.
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State& x0, Trajectory& trajectory,
                                                   double share, const Deadline& deadline, int& left,
                                                   HardReport& report) noexcept {
-  constexpr double kTolerance = 1e-8, kFirstUnit = 0.1, kNoDefect = 1e-9;
-  constexpr double kFall = 1e-2;        // of the share
-  constexpr double kLimitShare = 1e-1;  // penalty of the stages' limits over others while the cost counts
-  constexpr double kSame = 1e-3;        // difference of two violations of one point, relative
-  constexpr double kMuch = 0.1, kLeastUnit = 1e-3;  // over the unit: repeat below it, least next unit
+  // Chosen.
+  constexpr double kTolerance = 1e-8;  // tolerance of the method
+  constexpr double kNoDefect = 1e-9;   // largest defect of a simulation
+  constexpr double kFall = 1e-2;       // next share of the cost over this one
+  constexpr double kLimitShare =
+      1e-1;                            // penalty of the stages' constraints over others while the cost counts
+  constexpr double kSame = 1e-3;       // relative difference of two violations at one point
+  constexpr double kFirstUnit = 0.1;   // least first unit of violations
+  constexpr double kMuch = 0.1;        // violation over its unit below which the last step is repeated
+  constexpr double kLeastUnit = 1e-3;  // least next unit over this one
   forget_multipliers();
   inner_.ask_for(kTolerance);
   Misses misses = measure(problem, trajectory, nullptr);
-  double unit = std::max(kFirstUnit, misses.worst);  // states of a guess may miss nothing but the dynamics
+  double unit = std::max(kFirstUnit, misses.worst);  // a guess may violate the dynamics alone
   SolveReport seen;
   bool converged = false;
   for (Begin begin = Begin::kGuess; left > 0 && !deadline.spent(); begin = Begin::kNear) {
@@ -88,15 +96,18 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
   forget_multipliers();
   return is_certified_;
 }
-/// Whether no inputs within their bounds are free of violation, by slopes and multipliers at the inputs of
-/// the least, whose misses are `violation` of their unit (docs/solver.md, eq. 55a): all slopes together, each
-/// times the distance to the bound that it points to, and what multipliers do not show, are a small share.
-/// Infinite bounds count as kFarthest times the input away. Final where other inputs have the rows that the
-/// slopes foretell: rows that are linear.
+/// Whether no inputs within their bounds are free of violation, by slopes and multipliers at the point
+/// `least`, whose violation is `violation` units (docs/solver.md, eq. 55a). The proof: the sum of all slopes,
+/// each times the distance to the bound that it points to, and the violation that multipliers do not show,
+/// are small shares of the violation. The proof is final if rows are linear, that is if their values at other
+/// inputs are as the slopes predict.
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::is_proven(const P& problem, const State& x0, const Trajectory& least,
                                               double violation, bool converged) noexcept {
-  constexpr double kFarthest = 1e3, kRounding = 1e-6, kLittle = 1e-1, kNextToNothing = 1e-3;
+  // Chosen.
+  constexpr double kFarthest = 1e3;   // distance over the input that stands for an infinite bound
+  constexpr double kRounding = 1e-6;  // relative error of a linear prediction
+  constexpr double kLittle = 1e-1, kNextToNothing = 1e-3;  // small shares for linear rows, and for others
   double gain = 0.0, change = 0.0;
   copy_ = guess_;
   clamp_inputs(problem, copy_);
@@ -122,11 +133,12 @@ bool HardSolver<P, Capacity, Arch>::is_proven(const P& problem, const State& x0,
   const double little = is_final_ ? kLittle : (converged ? kNextToNothing : 0.0);
   return gain <= little * violation && here >= (1.0 - little) * violation;
 }
-/// The answer is the point of least violation, with the multipliers of the violation alone: its certificate.
+/// Returns the point of least violation, with the multipliers of the violation alone, which are its
+/// certificate.
 template <HardProblem P, int Capacity, class Arch>
-HardReport HardSolver<P, Capacity, Arch>::tell_infeasible(const P& problem, const State& x0,
-                                                          Trajectory& trajectory,
-                                                          HardReport report) noexcept {
+HardReport HardSolver<P, Capacity, Arch>::report_infeasible(const P& problem, const State& x0,
+                                                            Trajectory& trajectory,
+                                                            HardReport report) noexcept {
   put_light(least_multipliers_, trajectory.horizon);
   weigh_misses(0.0, least_unit_);
   trajectory = least_;
@@ -139,7 +151,7 @@ HardReport HardSolver<P, Capacity, Arch>::tell_infeasible(const P& problem, cons
   problem_.violation_penalty = 0.0;
   return finish(SolveStatus::kInfeasible, now, report);
 }
-/// The cost by `share`; misses cost their multiples of `unit`.
+/// Sets the weight of the cost to `share`, and of misses to one for each `unit`.
 template <HardProblem P, int Capacity, class Arch>
 void HardSolver<P, Capacity, Arch>::weigh_misses(double share, double unit) noexcept {
   problem_.cost_root = std::sqrt(share);

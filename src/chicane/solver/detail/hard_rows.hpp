@@ -17,23 +17,31 @@
 
 namespace chicane::solver {
 
-/// Whether residuals after a problem's own represent rows that must hold (detail/augmented.hpp).
+/// Whether a problem has further residuals that represent hard rows (detail/augmented.hpp).
 template <class P>
 inline constexpr bool kHasHardRows = requires {
   P::kOwnResiduals;
 };
+/// Number of residuals of a stage without hard rows.
 template <class P>
 [[nodiscard]] constexpr std::size_t own_residuals() noexcept {
   if constexpr (kHasHardRows<P>) return P::kOwnResiduals;
   return P::kNr;
 }
 
-/// Rows that must hold inside the primal-dual method (docs/solver.md, eq. 50–55): h − p + n = 0 with a
-/// multiplier y between two limits. p ≥ 0 exists where the upper limit is finite, with μ = p (high −
-/// y), n ≥ 0 where the lower one is, with μ = n (y − low). An equality that holds has no limits, an
-/// inequality that holds has 0 below, whose n is its slack. Elastic rows may give way: limits −ρ₁, ρ₁ of
-/// an equality, 0, ρ₁ of an inequality. The problem's functions return rows as residuals √w (h + shift), in
-/// which p and n are eliminated; linearisations store those here with their derivatives.
+/// Hard rows inside the primal-dual method (docs/solver.md, eq. 50–55): h − p + n = 0 with a multiplier y
+/// between two limits. p ≥ 0 exists if the upper limit is finite, with μ = p (high − y); n ≥ 0 exists if the
+/// lower limit is finite, with μ = n (y − low).
+///
+/// | row | lower limit | upper limit |
+/// |---|---|---|
+/// | equality | −∞ | ∞ |
+/// | inequality, whose slack is n | 0 | ∞ |
+/// | elastic equality, which may be violated | −ρ₁ | ρ₁ |
+/// | elastic inequality | 0 | ρ₁ |
+///
+/// The problem's functions return rows as residuals √w (h + shift), in which p and n are eliminated;
+/// linearisations store these residuals here with their derivatives.
 template <class P, std::size_t Capacity, class Arch>
 class HardRows {
  public:
@@ -44,7 +52,9 @@ class HardRows {
   using V = Stages<Arch>;
   using Step = Iterate<kNx, kNu, Capacity>;
 
-  // ---- what linearisations leave here
+  // ---- residuals from linearisations
+
+  /// Stores residual n of the eight stages from k on.
   template <class Row>
   CHICANE_INLINE void store(std::size_t n, std::size_t k, const Row& r) noexcept {
     r.v.store(value_[n] + k);
@@ -53,16 +63,18 @@ class HardRows {
     }
     each_slope<V>(r, [&](std::size_t j, const V& slope) { slope.store(row_[n][j] + k); });
   }
+  /// Stores the value of residual n of the end; its slopes become zero.
   void store_end(std::size_t n, double value) noexcept {
     end_value_[n] = value;
     is_there_[n] = true;
     std::fill(std::begin(end_row_[n]), std::end(end_row_[n]), 0.0);
   }
+  /// Stores the slope of residual n of the end by state i.
   void store_end_slope(std::size_t n, std::size_t i, double slope) noexcept { end_row_[n][i] = slope; }
 
   // ---- the method
 
-  /// No multipliers yet, and hardly any weight: of the guess the costs alone are to be seen.
+  /// Starts without multipliers and with negligible weights, so that at the guess only costs count.
   void begin(P& problem) noexcept {
     problem.is_primal_dual = true;
     for (std::size_t n = 0; n < kStageRows; ++n) problem.set_weight(n, kNearlyNone);
@@ -78,14 +90,15 @@ class HardRows {
     end_ = {};
     is_ready_ = false;
   }
-  /// Rows of the primal-dual method again, where end() has left them.
+  /// Continues the primal-dual method from the state at end().
   void resume(P& problem, double mu, std::size_t horizon) noexcept {
     problem.is_primal_dual = true;
     set_rows(problem, mu, horizon);
   }
+  /// Whether weigh() has been called.
   [[nodiscard]] bool is_ready() const noexcept { return is_ready_; }
-  /// Sets weights of at most `rho` from now on, over the square of the steepest slope of each row where that
-  /// is above 1; rows give way at `penalty`, if that is above zero. Pre: begin(), then one linearisation.
+  /// Sets the weights: `rho`, divided by the square of a row's steepest slope if that is above 1. With
+  /// `penalty` > 0 rows are elastic, with that limit of multipliers. Pre: begin(), then one linearisation.
   void weigh(double rho, double penalty, std::size_t horizon) noexcept {
     rho_ = rho;
     is_ready_ = true;
@@ -104,14 +117,16 @@ class HardRows {
       end_share_[n] = share(steepest);
     }
   }
-  /// Weights `factor` times as large, at most `most`: multipliers that lag behind reach their values sooner.
+  /// Multiplies the weights by `factor`, up to `most`, so that multipliers converge faster.
   void raise(P& problem, double factor, double most, double mu, std::size_t horizon) noexcept {
     if (is_elastic() || rho_ >= most) return;
     rho_ *= factor;
     set_rows(problem, mu, horizon);
   }
+  /// Whether rows may be violated at a penalty.
   [[nodiscard]] bool is_elastic() const noexcept { return most_ < kInfinity; }
-  /// p, n and multipliers of the rows of eight stages from k on, whose values are `h`, on the central path.
+  /// Puts p, n and multipliers of row n of the eight stages from k on, whose values are `h`, on the central
+  /// path.
   void centre(std::size_t n, std::size_t k, const V& h, double mu) noexcept {
     alignas(64) double values[8];
     h.store(values);
@@ -123,14 +138,14 @@ class HardRows {
       rows.above[k + lane] = row.above, rows.below[k + lane] = row.below;
     }
   }
-  /// The same of the end; slacks of inequalities that must hold get some room.
+  /// Puts rows of the end, whose values are `h`, on the central path; slacks of inequalities get some room.
   template <class Values>
   void centre_end(const Values& h, double mu) noexcept {
     for (std::size_t n = 0; n < kEndRows; ++n)
       end_[n] = centred(limits(n), h[n], n < kEqualities ? end_[n].y : 0.0, mu);
   }
-  /// Updates weights and shifts after a change of rows or μ: their residuals have the force of the eliminated
-  /// p and n.
+  /// Updates weights and shifts of the problem's residuals after a change of rows or μ, so that the residuals
+  /// have the force of the eliminated p and n.
   void set_rows(P& problem, double mu, std::size_t horizon) noexcept {
     for (std::size_t n = 0; n < kStageRows; ++n) {
       for (std::size_t k = 0; k < horizon; k += 8) {
@@ -145,8 +160,8 @@ class HardRows {
       problem.terminal_shift[n] = shift;
     }
   }
-  /// Updates weights and shifts after a change of μ alone. `slope`, the gradient of the end, follows, and
-  /// through `pull(k, j, amount)` the stages' gradients.
+  /// Updates weights and shifts after a change of μ alone, the gradient of the end, `slope`, and the stages'
+  /// gradients through `pull(k, j, amount)`.
   template <class Pull>
   void set_rows(P& problem, double mu, std::size_t horizon, double* slope, const Pull& pull) noexcept {
     const auto old_end = problem.terminal_shift;
@@ -169,7 +184,7 @@ class HardRows {
     }
   }
 
-  /// Directions of all rows that belong to a step from the present iterate; how far they may be followed.
+  /// Finds the directions of all rows for a step from the present iterate, and their longest lengths.
   StepLengths find(const P& problem, const Step& step, double mu, double fraction) noexcept {
     slope_ = 0.0;
     V primal(0.0), dual(0.0);
@@ -183,8 +198,7 @@ class HardRows {
           change += V::load(row_[n][kNx + m] + k) * V::load(step.u[m] + k);
         const V value = V::load(value_[n] + k),
                 root = problem.equality_root[n].at(StageLanes<V>{static_cast<int>(k)});
-        const auto live =
-            stage_number(StageLanes<V>{static_cast<int>(k)}) < V(static_cast<double>(step.horizon));
+        const auto live = stages_before<V>(k, step.horizon);
         const Row<V> row = stage_[n].load(k);
         const Row<V> d = row.step(limits, root * (value + change), mu);
         stage_step_[n].store(k, d);
@@ -212,7 +226,7 @@ class HardRows {
   /// Slope of the rows' cost along the direction, less the part that the stages' gradients contain.
   [[nodiscard]] double slope() const noexcept { return slope_; }
 
-  /// The value of row n of eight stages from k on, whose residual is `value`.
+  /// Value of row n of the eight stages from k on, whose residual is `value`.
   [[nodiscard]] static V row_value(const P& problem, std::size_t n, std::size_t k, const V& value) noexcept {
     const StageLanes<V> lanes{static_cast<int>(k)};
     return value / problem.equality_root[n].at(lanes) - problem.equality_shift[n].at(lanes);
@@ -233,7 +247,7 @@ class HardRows {
       logs += select(live, logarithms, V(0.0));
     });
   }
-  /// The same of the end, whose rows are `h`.
+  /// Adds miss, cost and logarithms of the rows of the end, whose values are `h`.
   template <class Values>
   void measure_end(const Values& h, double length, Merit& merit) noexcept {
     for (std::size_t n = 0; n < kEndRows; ++n) {
@@ -241,7 +255,7 @@ class HardRows {
       Row<double> at = end_[n];
       if (length > 0.0) {
         at.go(length, end_step_[n]);
-        if (n >= kEqualities) at.n = std::max(at.n, at.p - h[n]);  // more room costs nothing
+        if (n >= kEqualities) at.n = std::max(at.n, at.p - h[n]);  // a larger slack costs nothing
       }
       end_at_[n] = at;
       at.measure(limits(n), h[n], [&](double missed, double costs, double logarithms) {
@@ -257,7 +271,7 @@ class HardRows {
     V all(0.0);
     for (std::size_t n = 0; n < kStageRows; ++n) {
       for (std::size_t k = 0; k < horizon; k += 8) {
-        const auto live = stage_number(StageLanes<V>{static_cast<int>(k)}) < V(static_cast<double>(horizon));
+        const auto live = stages_before<V>(k, horizon);
         const V h = row_value(problem, n, k, V::load(value_[n] + k));
         all = max(all, select(live, stage_[n].load(k).worst(stage_limits(n), h, mu, unit), V(0.0)));
       }
@@ -277,18 +291,19 @@ class HardRows {
       sum += (end_value_[n] - end_weight(problem, n)) * end_row_[n][i];
     return sum;
   }
-  /// The multiplier of row n of the end over √w; of the stages from k on.
+  /// Multiplier of row n of the end over √w.
   [[nodiscard]] double end_weight(const P& problem, std::size_t n) const noexcept {
     return end_[n].y / problem.terminal_weight[n].root;
   }
+  /// Multiplier of row n of the eight stages from k on over √w.
   [[nodiscard]] V stage_weight(const P& problem, std::size_t n, std::size_t k) const noexcept {
     return V::load(stage_[n].y + k) / problem.equality_root[n].at(StageLanes<V>{static_cast<int>(k)});
   }
 
-  /// Moves to the point of the last measure(); multipliers of equalities that must hold by `length` of their
-  /// direction, others by `dual_length`.
+  /// Moves to the point of the last measure(); multipliers of equalities that are not elastic by `length` of
+  /// their direction, others by `dual_length`.
   void move(P& problem, double length, double dual_length, double mu, std::size_t horizon) noexcept {
-    constexpr double kFar = 1e10;  // range of y around μ / n, as a factor
+    constexpr double kFar = 1e10;  // largest factor between y and μ / n; usual for the method
     const double by = is_elastic() ? dual_length : length;
     for (std::size_t n = 0; n < kStageRows; ++n) {
       for (std::size_t k = 0; k < horizon; k += 8) {
@@ -306,7 +321,7 @@ class HardRows {
     }
     set_rows(problem, mu, horizon);
   }
-  /// Back to an augmented Lagrangian, with the multipliers that were found.
+  /// Ends the method: the problem becomes an augmented Lagrangian with the multipliers that were found.
   void end(P& problem, std::size_t horizon) noexcept {
     problem.is_primal_dual = false;
     for (std::size_t n = 0; n < kStageRows; ++n) {
@@ -323,34 +338,37 @@ class HardRows {
 
  private:
   static constexpr std::size_t kStride = kStageStride<Capacity>;
-  static constexpr double kPush = 1e-2;         ///< least start of n, relative to h
-  static constexpr double kNearlyNone = 1e-12;  ///< weight of a row without effect
+  static constexpr double kPush = 1e-2;         ///< least first n over |h|; usual for the method
+  static constexpr double kNearlyNone = 1e-12;  ///< negligible weight of a row; chosen
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   template <class T, std::size_t N>
   using Of = std::array<T, (N > 0 ? N : 1)>;
+  /// One number for each stage.
   struct alignas(64) Line {
     double values[kStride]{};
     operator double*() noexcept { return values; }
     operator const double*() const noexcept { return values; }
   };
-  /// Range of a multiplier; `soft`: share of its row that a multiplier leaves; `scale`: of the row.
+  /// Range of a multiplier. `soft`: violation over multiplier of an equality that is not elastic; `scale`:
+  /// factor of the row in miss and residual.
   struct Limits {
     double low = 0.0, high = 0.0, soft = 0.0, scale = 1.0;
     [[nodiscard]] bool has_p() const noexcept { return high < kInfinity; }
     [[nodiscard]] bool has_n() const noexcept { return low > -kInfinity; }
   };
-  /// One row, or one of eight stages: `above` = high − y, `below` = y − low. Also a direction of it.
+  /// One row, or one of eight stages, or a direction of it: `above` = high − y, `below` = y − low.
   template <class T>
   struct Row {
     T y{0.0}, p{0.0}, n{0.0}, above{1.0}, below{1.0};
 
+    /// Root of the weight and shift of the residual.
     [[nodiscard]] auto residual(const Limits& limits, double mu) const noexcept {
       T give(limits.soft), shift(0.0);
       if (limits.has_p()) give += p / above, shift -= mu / above;
       if (limits.has_n()) give += n / below, shift += mu / below;
       return std::array<T, 2>{1.0 / sqrt(give), y * give + shift};
     }
-    /// Towards multiplier `next`.
+    /// Direction towards the multiplier `next`.
     [[nodiscard]] Row step(const Limits& limits, const T& next, double mu) const noexcept {
       Row d;
       d.y = next - y;
@@ -360,6 +378,7 @@ class HardRows {
       d.n = limits.has_n() ? mu / below - n - n / below * d.y : T(0.0);
       return d;
     }
+    /// Slope of cost and barriers along a direction.
     [[nodiscard]] T slope(const Limits& limits, const Row& d, double mu) const noexcept {
       T sum(0.0);
       if (limits.has_p()) sum += (limits.high - mu / p) * d.p;
@@ -373,10 +392,12 @@ class HardRows {
       if (limits.has_n()) primal = larger(primal, -d.n / n), dual = larger(dual, -d.below / below);
       return {primal, dual};
     }
+    /// Moves p and n by `length` of a direction.
     void go(double length, const Row& d) noexcept {
       p += length * d.p;
       n += length * d.n;
     }
+    /// Moves the multiplier by `length` of a direction, p and n to given values.
     void move(double length, const Row& d, const T& p_at, const T& n_at) noexcept {
       y += length * d.y;
       above += length * d.above;
@@ -384,6 +405,7 @@ class HardRows {
       p = p_at;
       n = n_at;
     }
+    /// Calls add(miss, cost, logarithms) of a row with value h.
     template <class Add>
     void measure(const Limits& limits, const T& h, const Add& add) const noexcept {
       T cost(0.0), logs(0.0);
@@ -391,6 +413,7 @@ class HardRows {
       if (limits.has_n()) cost -= limits.low * n, logs += log(n);
       add(limits.scale * magnitude(h - p + n), cost, logs);
     }
+    /// Largest residual of the row and of its complementarity.
     [[nodiscard]] T worst(const Limits& limits, const T& h, double mu, double unit) const noexcept {
       T result = unit * limits.scale * magnitude(h - p + n);
       if (limits.has_p()) result = larger(result, magnitude(p * above - mu));
@@ -422,8 +445,8 @@ class HardRows {
     if (is_elastic()) return {-most_, most_, 0.0, 1.0};
     return {-most_, most_, 1.0 / (rho_ * share), std::sqrt(share)};
   }
-  /// A row of value h: elastic ones on the central path, h = μ/(high − y) − μ/(y − low); slacks of others
-  /// with some room, and multiplier `y` of equalities.
+  /// A row of value h: an elastic one on the central path, h = μ/(high − y) − μ/(y − low); an inequality with
+  /// some room in its slack; an equality with multiplier `y`.
   static Row<double> centred(const Limits& limits, double h, double y, double mu) noexcept {
     Row<double> row;
     row.y = y;
@@ -443,21 +466,22 @@ class HardRows {
     return row;
   }
 
-  Of<Line, kStageRows> value_{};
-  Of<std::array<Line, kNz>, kStageRows> row_{};
-  Of<Rows, kStageRows> stage_{}, stage_step_{}, stage_at_{};
-  double end_value_[kEndRows + 1]{}, end_row_[kEndRows + 1][kNx]{};
-  std::array<Row<double>, kEndRows + 1> end_{}, end_step_{}, end_at_{};
-  bool is_there_[kEndRows + 1]{};         ///< sparse rows may be absent: rows that the problem does not have
-  Of<double, kStageRows> stage_share_{};  ///< of rho_, by row
-  Of<double, kEndRows> end_share_{};
-  double most_ = kInfinity;  ///< limit of multipliers
-  double slope_ = 0.0;
-  double rho_ = 1.0;
-  bool is_ready_ = false;  ///< weigh() has been called
+  Of<Line, kStageRows> value_{};                              ///< residuals of the stages
+  Of<std::array<Line, kNz>, kStageRows> row_{};               ///< their slopes
+  Of<Rows, kStageRows> stage_{}, stage_step_{}, stage_at_{};  ///< rows of the stages, directions, trial
+  double end_value_[kEndRows + 1]{}, end_row_[kEndRows + 1][kNx]{};  ///< residuals of the end, slopes
+  std::array<Row<double>, kEndRows + 1> end_{}, end_step_{},
+      end_at_{};                          ///< rows of the end, directions, trial
+  bool is_there_[kEndRows + 1]{};         ///< whether a problem with sparse rows has the row
+  Of<double, kStageRows> stage_share_{};  ///< weights of the stages' rows over rho_
+  Of<double, kEndRows> end_share_{};      ///< weights of the end's rows over rho_
+  double most_ = kInfinity;               ///< limit of multipliers of elastic rows
+  double slope_ = 0.0;                    ///< slope()
+  double rho_ = 1.0;                      ///< weight of rows with slopes up to 1
+  bool is_ready_ = false;                 ///< is_ready()
 };
 
-/// Member of problems without some part of the solver.
+/// Empty member in place of a part that the solver of a problem does not need.
 struct Nothing {};
 
 }  // namespace chicane::solver

@@ -16,10 +16,10 @@
 
 namespace chicane::solver {
 
-/// OcpSolver for problems with something that must hold beside dynamics and bounds (hard_constraints.hpp):
-/// the primal-dual method of detail/hard_rows.hpp, then full steps from its multipliers (docs/solver.md).
-/// Where that fails, restoration (detail/hard_restoration.hpp) proves that no point nearby holds, or finds
-/// one, from where the method begins again.
+/// OcpSolver for problems with hard constraints (hard_constraints.hpp): the primal-dual method of
+/// detail/hard_rows.hpp, then full steps from its multipliers (docs/solver.md). If that fails, restoration
+/// (detail/hard_restoration.hpp) proves that no point nearby is feasible, or finds one, from which the method
+/// starts again.
 template <HardProblem P, int Capacity, class Arch>
 class HardSolver {
  public:
@@ -90,20 +90,22 @@ class HardSolver {
   static constexpr std::size_t kNh = Problem::kEqualities, kNc = P::kNc;
   static constexpr std::size_t kNeh = Problem::kEndEqualities;
   static constexpr std::size_t kEnd = kNeh + Problem::kEndConstraints;
-  static constexpr int kMostIterations = 200;  ///< limit from one start
-  static constexpr int kMostFullSteps = 15;    ///< limit in one round
-  static constexpr int kMostBarriers = 2;      ///< lower ones, where full steps fail
-  static constexpr double kLeastShare = 1e-8;  ///< of the cost in restoration
-  static constexpr double kLight = 1e-9;       ///< weight of rows, negligible beside their multipliers
+  // Chosen.
+  static constexpr int kMostIterations = 200;  ///< limit of iterations from one start
+  static constexpr int kMostFullSteps = 15;    ///< limit of full steps in one round
+  static constexpr int kMostBarriers = 2;      ///< lower barriers that are tried if full steps fail
+  static constexpr double kLeastShare = 1e-8;  ///< least share of the cost in restoration
+  static constexpr double kLight = 1e-9;       ///< weight of rows that is negligible beside their multipliers
 
   /// Violations of a trajectory.
   struct Misses {
-    double worst = 0.0;
-    double cost = 0.0;      ///< the problem's own, with its first penalties
-    double total = 0.0;     ///< sum over all rows of all stages
-    double weighted = 0.0;  ///< sum of the rows, each times its multiplier
+    double worst = 0.0;     ///< largest violation
+    double cost = 0.0;      ///< cost of the problem, with its first penalties
+    double total = 0.0;     ///< sum of the violations of all rows of all stages
+    double weighted = 0.0;  ///< sum of the rows' values, each times its multiplier
   };
 
+  /// The whole solve, from multipliers_ if they are known.
   HardReport run(const P& problem, const State& x0, Trajectory& trajectory,
                  const Deadline& deadline) noexcept {
     HardReport report;
@@ -114,8 +116,8 @@ class HardSolver {
     start(problem, x0, trajectory);
     int left = options_.max_iterations;
     if (multipliers_.is_known && finish_steps(problem, x0, trajectory, deadline, left, report)) return report;
-    // The method from the guess; from what restoration finds near its last point; from what it finds near the
-    // guess, from where less and less of the cost counts.
+    // Starts of the method: the guess; the point that restoration finds from its last point; the points that
+    // restoration finds from the guess, with different first shares of the cost.
     constexpr std::array kShares{0.0, kLeastShare, 100.0, 1.0, 10.0};
     for (std::size_t attempt = 0; attempt < kShares.size() && left > 0 && !deadline.spent(); ++attempt) {
       attempt == 1 ? inner_.start_from_states(true) : begin_again(trajectory);
@@ -130,11 +132,10 @@ class HardSolver {
         if (take_point(problem, trajectory, report)) return report;
       }
     }
-    if (is_certified_) return tell_infeasible(problem, x0, trajectory, report);
+    if (is_certified_) return report_infeasible(problem, x0, trajectory, report);
     return stall(problem, x0, trajectory, report);
   }
-  /// The answer without a solution: the last point, or the simulated guess if that violates less and costs
-  /// less.
+  /// Answers without a solution: the last point, or the simulated guess if it violates less and costs less.
   HardReport stall(const P& problem, const State& x0, Trajectory& trajectory, HardReport report) noexcept {
     forget_multipliers();
     copy_ = trajectory;
@@ -155,12 +156,13 @@ class HardSolver {
   using Begin = typename OcpSolver<Augmented<P, Capacity>, Capacity, Arch>::Begin;
   bool follow(Begin begin, const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
               HardReport& report) noexcept;
-  /// The guess again, without multipliers.
+  /// Returns to the guess, without multipliers.
   void begin_again(Trajectory& trajectory) noexcept {
     trajectory = guess_;
     inner_.start_from_states(options_.start_from_states);
     forget_multipliers();
   }
+  /// Resets weights, shifts and penalties to those of a problem without multipliers.
   void forget_multipliers() noexcept {
     can_go_on_ = false;
     problem_.cost_root = 1.0;
@@ -172,12 +174,12 @@ class HardSolver {
     for (auto& weight : problem_.terminal_weight) weight.set(1.0);
     problem_.terminal_shift.fill(0.0);
   }
-  /// Full steps with the known multipliers, in rounds that improve these (eq. 57). True at a solution, or at
-  /// a usable point where the budget ends.
+  /// Full steps with the known multipliers, in rounds that improve the multipliers (eq. 57). True at a
+  /// solution, or at a usable point at the end of the budget.
   bool finish_steps(const P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline,
                     int& left, HardReport& report) noexcept {
-    constexpr int kMostRounds = 10;
-    constexpr double kEnough = 0.5;  // share of the misses that a round may leave
+    constexpr int kMostRounds = 10;  // chosen
+    constexpr double kEnough = 0.5;  // largest share of the misses that a round may leave; chosen
     double last = std::numeric_limits<double>::infinity();
     for (int n = 0; n < kMostRounds && left > 0; ++n) {
       const bool converged = round(x0, trajectory, deadline, left, report);
@@ -193,7 +195,7 @@ class HardSolver {
     }
     return false;
   }
-  /// The point at the end of the barrier as the answer, where full steps do not converge. True if it is
+  /// Answers with the point at the end of the barrier, for full steps that do not converge. True if it is
   /// usable.
   bool take_point(const P& problem, Trajectory& trajectory, HardReport& report) noexcept {
     put_light(point_multipliers_, trajectory.horizon);
@@ -207,7 +209,7 @@ class HardSolver {
     report = finish(seen.status, now, seen);
     return true;
   }
-  /// `report` becomes one of `trajectory`, simulated or with its states; its status and its counts stay.
+  /// Makes `report` a report on `trajectory`, simulated or with its states; status and counts stay.
   void assess(const State& x0, Trajectory& trajectory, bool with_states, HardReport& report) noexcept {
     inner_.allow_iterations(0);
     inner_.start_from_states(with_states);
@@ -216,14 +218,14 @@ class HardSolver {
     if (report.status != SolveStatus::kNotFinite) report.status = kept.status;
     report.iterations = kept.iterations, report.sweeps = kept.sweeps;
   }
-  /// `report` of one more solve, with the counts of all.
+  /// Makes `report` the report of one more solve, with the counts of all solves.
   static void take(const SolveReport& now, HardReport& report) noexcept {
     const int iterations = report.iterations + now.iterations, sweeps = report.sweeps + now.sweeps;
     static_cast<SolveReport&>(report) = now;
     report.iterations = iterations, report.sweeps = sweeps;
   }
 
-  /// One solve. True when it converged.
+  /// One solve with the present multipliers. True if it converges.
   bool round(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
              HardReport& report) noexcept {
     inner_.allow_iterations(std::min(left, kMostFullSteps));
@@ -246,10 +248,12 @@ class HardSolver {
     const int c = report.worst_constraint;
     return c >= 0 && report.violation > penalty_of(problem_, static_cast<std::size_t>(c)).cap;
   }
-  /// Tolerance of rounds: multipliers are as good as the round that yields them, so that loose ones mislead.
+  /// Tolerance of rounds: multipliers are only as accurate as the round that yields them.
   [[nodiscard]] double round_tolerance() const noexcept { return std::min(options_.tolerance, 1e-6); }
 
   // ---- weights and multipliers
+
+  /// Starts a solve; puts known multipliers into the problem.
   void start(const P& problem, const State& x0, Trajectory& trajectory) noexcept {
     problem_.problem = &problem;
     problem_.cost_root = 1.0;
@@ -262,8 +266,8 @@ class HardSolver {
     inner_.start_from_states(options_.start_from_states);
     put_multipliers(trajectory.horizon);
   }
-  /// y ← y + ρ h (eq. 57). An inequality whose multiplier is not zero has to hold with equality: its distance
-  /// counts as a miss.
+  /// Updates the multipliers, y ← y + ρ h (eq. 57). An inequality with a multiplier other than zero has to
+  /// hold with equality: its distance counts as a miss.
   Misses update(Misses now, int horizon) noexcept {
     for (std::size_t n = 0; n < kNh; ++n) {
       for (std::size_t k = 0; k < static_cast<std::size_t>(horizon); ++k)
@@ -279,6 +283,7 @@ class HardSolver {
     keep_multipliers(horizon);
     return now;
   }
+  /// Copies multipliers, weights and penalties of the problem to multipliers_.
   void keep_multipliers(int horizon) noexcept {
     multipliers_.is_known = true;
     for (std::size_t n = 0; n < kNh; ++n) {
@@ -292,13 +297,14 @@ class HardSolver {
     }
     multipliers_.penalty_factor = problem_.penalty_factor;
   }
-  /// `multipliers` with hardly any weight beside them.
+  /// Puts multipliers into the problem, with negligible weights.
   void put_light(const Multipliers& multipliers, int horizon) noexcept {
     multipliers_ = multipliers;
     multipliers_.equality_weight.fill(kLight);
     multipliers_.terminal_weight.fill(kLight);
     put_multipliers(horizon);
   }
+  /// Copies multipliers_, weights and penalties to the problem.
   void put_multipliers(int horizon) noexcept {
     for (std::size_t n = 0; n < kNh; ++n) {
       problem_.set_weight(n, multipliers_.equality_weight[n]);
@@ -312,11 +318,11 @@ class HardSolver {
     problem_.penalty_factor = multipliers_.penalty_factor;
   }
 
-  // ---- what cannot hold (detail/hard_restoration.hpp)
+  // ---- restoration (detail/hard_restoration.hpp)
   bool is_infeasible(const P& problem, const State& x0, Trajectory& trajectory, double share,
                      const Deadline& deadline, int& left, HardReport& report) noexcept;
-  HardReport tell_infeasible(const P& problem, const State& x0, Trajectory& trajectory,
-                             HardReport report) noexcept;
+  HardReport report_infeasible(const P& problem, const State& x0, Trajectory& trajectory,
+                               HardReport report) noexcept;
   bool is_proven(const P& problem, const State& x0, const Trajectory& least, double violation,
                  bool converged) noexcept;
   void weigh_misses(double share, double unit) noexcept;
@@ -327,7 +333,8 @@ class HardSolver {
   }
 
   // ---- values
-  /// Computes cost and misses of a trajectory; keeps the values of rows, and reports the worst.
+
+  /// Computes cost and misses of a trajectory; keeps the values of rows, and reports the worst one.
   Misses measure(const P& problem, const Trajectory& t, HardReport* report) noexcept {
     Misses misses;
     const auto note = [&](double value, Kind kind, int stage, std::size_t row) {
@@ -404,28 +411,28 @@ class HardSolver {
   }
 
   SolverOptions options_;
-  OcpSolver<Problem, Capacity, Arch> inner_;
-  Problem problem_;
-  Multipliers multipliers_;
-  double unit_ = 1.0;  ///< unit of costs
-  IterationLog* log_ = nullptr;
-  Trajectory guess_;
-  Trajectory copy_;                ///< copy for reports, which may change it
-  Multipliers point_multipliers_;  ///< multipliers at the end of the barrier
-  Trajectory least_;               ///< local minimum of the violation above zero, if is_certified_
-  Multipliers least_multipliers_;  ///< multipliers of the violation alone there
-  double least_total_ = 0.0;       ///< sum of the misses there
-  double least_unit_ = 1.0;        ///< unit of the misses there
-  bool is_certified_ = false;
-  bool is_final_ = false;     ///< no other start would end elsewhere
-  bool is_possible_ = false;  ///< a point without misses has been found
-  bool can_go_on_ = false;    ///< the next round differs little from the last one
-  std::array<std::array<double, Capacity>, kNh> equality_{};  ///< values at the last measure()
-  std::array<double, kEnd> terminal_{};
+  OcpSolver<Problem, Capacity, Arch> inner_;  ///< solver of the augmented Lagrangian
+  Problem problem_;                           ///< augmented Lagrangian of the problem
+  Multipliers multipliers_;                   ///< multipliers of the answer
+  double unit_ = 1.0;                         ///< unit of costs
+  IterationLog* log_ = nullptr;               ///< record_iterations()
+  Trajectory guess_;                          ///< guess of the solve
+  Trajectory copy_;                           ///< copy for reports, which may change it
+  Multipliers point_multipliers_;             ///< multipliers at the end of the barrier
+  Trajectory least_;                          ///< local minimum of the violation above zero, if is_certified_
+  Multipliers least_multipliers_;             ///< multipliers of the violation alone there
+  double least_total_ = 0.0;                  ///< sum of the misses there
+  double least_unit_ = 1.0;                   ///< unit of the misses there
+  bool is_certified_ = false;                 ///< whether such a minimum is proven
+  bool is_final_ = false;                     ///< whether no other start would end elsewhere
+  bool is_possible_ = false;                  ///< whether a point without misses has been found
+  bool can_go_on_ = false;                    ///< whether the next round differs little from the last one
+  std::array<std::array<double, Capacity>, kNh> equality_{};  ///< equalities at the last measure()
+  std::array<double, kEnd> terminal_{};                       ///< rows of the end at the last measure()
 };
 
-/// A class of its own does the work: compilers differ in how they distinguish members of a constrained
-/// specialisation from members of the class itself.
+/// Specialisation for problems with hard constraints. HardSolver does the work, because compilers differ in
+/// how they distinguish members of a constrained specialisation from members of the primary template.
 template <HardProblem P, int Capacity, class Arch>
 class OcpSolver<P, Capacity, Arch> : public HardSolver<P, Capacity, Arch> {
  public:

@@ -20,13 +20,19 @@ using Stages = Pack<Arch, 8>;
 template <std::size_t Capacity>
 inline constexpr std::size_t kStageStride = padded_stages(Capacity + 1) + 8;
 
-/// A trajectory as the solver works on it: stage after stage of one variable, so that eight are one load.
-/// Also a step of one.
+/// Whether each of the eight stages from k on is before stage `horizon`.
+template <class V>
+[[nodiscard]] CHICANE_INLINE inline auto stages_before(std::size_t k, std::size_t horizon) noexcept {
+  return stage_number(StageLanes<V>{static_cast<int>(k)}) < V(static_cast<double>(horizon));
+}
+
+/// States and inputs of a horizon, or a step of them, in the order in which the solver works: all stages of
+/// one variable, then of the next, so that eight stages are one load.
 template <std::size_t Nx, std::size_t Nu, std::size_t Capacity>
 struct Iterate {
   alignas(64) double x[Nx][kStageStride<Capacity>]{};  ///< x[i][k], k <= horizon
-  alignas(64) double u[Nu][kStageStride<Capacity>]{};
-  std::size_t horizon = 0;
+  alignas(64) double u[Nu][kStageStride<Capacity>]{};  ///< u[m][k], k < horizon
+  std::size_t horizon = 0;                             ///< number of stages
 
   Iterate() = default;
   Iterate(const Iterate&) = delete;
@@ -40,19 +46,21 @@ struct Iterate {
     return *this;
   }
 
+  /// State of stage k.
   template <class T>
   [[nodiscard]] std::array<T, Nx> state(std::size_t k) const noexcept {
     std::array<T, Nx> result;
     for (std::size_t i = 0; i < Nx; ++i) result[i] = T(x[i][k]);
     return result;
   }
+  /// Input of stage k.
   template <class T>
   [[nodiscard]] std::array<T, Nu> input(std::size_t k) const noexcept {
     std::array<T, Nu> result;
     for (std::size_t m = 0; m < Nu; ++m) result[m] = T(u[m][k]);
     return result;
   }
-  /// Into the public form.
+  /// Copies to the trajectory of the user.
   template <class Trajectory>
   CHICANE_INLINE inline void write(Trajectory& trajectory) const noexcept {
     trajectory.horizon = static_cast<int>(horizon);
@@ -61,8 +69,8 @@ struct Iterate {
   }
 };
 
-/// The step of the quadratic program, stage after stage of one variable, with `Cut` inputs cut to their
-/// bounds; returns the longest move of an input.
+/// Copies the step of the quadratic program to `step`, with `Cut` with inputs cut to their bounds; returns
+/// the longest move of an input.
 template <class Arch, bool Cut, class Lq, class Step>
 double collect_step(const Lq& lq, std::size_t horizon, Step& step) noexcept {
   using V = Stages<Arch>;
@@ -107,7 +115,7 @@ void add_step(const Point& from, double length, const Point& step, Point& to) no
 /// Whether nothing moves by more than rounding between two points.
 template <class Arch, class Point>
 bool stays(const Point& from, const Point& to) noexcept {
-  constexpr double kTiny = 1e-15;
+  constexpr double kTiny = 1e-15;  // some roundings, relative
   const auto keeps = [&](const auto& a, const auto& b, std::size_t count) {
     for (std::size_t i = 0; i < std::size(a); ++i) {
       for (std::size_t k = 0; k < count; ++k) {

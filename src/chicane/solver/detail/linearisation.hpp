@@ -21,9 +21,9 @@
 
 namespace chicane::solver {
 
-/// Linearises an iterate: values and derivatives of every stage, exact adjoint, optimality measures, and the
-/// stages of the quadratic program (docs/solver.md, eq. 4–13, 22). From the
-/// horizon's end, eight stages at a time: evaluate them in lanes, run the adjoint through them, add up costs.
+/// Linearisation at an iterate: values and derivatives of every stage, exact adjoint, optimality measures,
+/// and the stages of the quadratic program (docs/solver.md, eq. 4–13, 22). Works from the horizon's end,
+/// eight stages at a time: evaluates them in lanes, runs the adjoint through them, adds up costs.
 template <OcpProblem P, std::size_t Capacity, class Arch>
 class Linearisation {
  public:
@@ -41,24 +41,24 @@ class Linearisation {
   alignas(64) double slope[kNu][kStageStride<Capacity>]{};    ///< dJ/du along the dynamics
   alignas(64) double adjoint[kNx][kStageStride<Capacity>]{};  ///< adjoint[i][k]: multiplier of x_{k+1}
   alignas(64) double lower[kNu][kStageStride<Capacity>]{};    ///< bounds of the inputs
-  alignas(64) double upper[kNu][kStageStride<Capacity>]{};
+  alignas(64) double upper[kNu][kStageStride<Capacity>]{};    ///< bounds of the inputs
   using Hard = std::conditional_t<kHasHardRows<P>, HardRows<P, Capacity, Arch>, Nothing>;
-  Hard hard;                   ///< rows that must hold, for the primal-dual method
-  double merit = 0.0;          ///< cost with the barrier's smoothed penalties; when slacks were centred
-  double defect_excess = 0.0;  ///< largest defect beyond its tolerance; <= 0: all are small enough
-  /// Residual of optimality in the states, [i][k] of x_k, k = 1 … horizon. If not null, multipliers of the
-  /// dynamics are unknowns, too: linearisations leave `adjoint` as it is and write the residual here.
+  Hard hard;                   ///< hard rows, for the primal-dual method
+  double merit = 0.0;          ///< cost with the barrier's smoothed penalties, if slacks were centred
+  double defect_excess = 0.0;  ///< largest defect less its tolerance; <= 0: all are small enough
+  /// Residual of optimality in the states, [i][k] of x_k, k = 1 … horizon. Not null: multipliers of the
+  /// dynamics are unknowns, so that linearisations leave `adjoint` unchanged and write the residual here.
   double (*state_residual)[kStageStride<Capacity>] = nullptr;
 
   /// Linearises at `t`. With Order 2 the stages get exact Hessians of the Lagrangian, else Gauss–Newton's.
-  /// `centre`: slacks are put on the central path first. `defect_share`: of 1 + |x| that defects may have.
-  /// Sets cost, defect, stationarity, complementarity and violation of the report.
+  /// `centre`: puts slacks on the central path first. `defect_share`: tolerance of defects over 1 + |x|. Sets
+  /// cost, defect, stationarity, complementarity and violation of the report.
   template <int Order>
   void linearise(const P& problem, const Point& t, bool centre, double defect_share, Slacks& slacks, Lq& lq,
                  SolveReport& report) noexcept {
     Sums sums;
     double lambda[kNx];
-    sums.end_cost = look_at_end<Order>(problem, t, lq, lambda);
+    sums.end_cost = linearise_end<Order>(problem, t, lq, lambda);
     for (std::size_t k = (t.horizon - 1) / 8 * 8 + 8; k > 0; k -= 8)
       linearise_stages<kHasOneLinearisation ? 2 : Order>(
           problem, t, k - 8, {centre, defect_share, Order == 2}, slacks, lambda, lq, sums);
@@ -72,14 +72,15 @@ class Linearisation {
   using Jacobians = typename Entries::Jacobians;
   using Gradient = typename Entries::Gradient;
 
-  /// One linearisation of second order for both kinds of Hessians, where that is to be built quickly and
+  /// Whether one linearisation of second order serves both kinds of Hessians: it compiles faster, and
   /// curvature costs little.
   static constexpr bool kHasOneLinearisation =
       StructuredProblem<P> && has_hessians<P>() && has_filter_method<P>();
+  /// Options of a linearisation, as linearise() has them.
   struct How {
     bool centre;
     double defect_share;
-    bool is_exact;
+    bool is_exact;  ///< exact Hessians
   };
 
   /// Sums over the horizon, eight stages side by side.
@@ -90,6 +91,7 @@ class Linearisation {
     V stationarity{0.0}, slopes{0.0};
     V complementarity{0.0}, violation{0.0}, values{0.0};
 
+    /// Sets the results of the linearisation and the report.
     void finish(Linearisation& now, SolveReport& report) const noexcept {
       report.cost = end_cost + sum(cost);
       now.merit = report.cost + sum(smoothing);
@@ -105,9 +107,9 @@ class Linearisation {
     static constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
   };
 
-  /// Terminal cost, its quadratic model and the adjoint there.
+  /// Sets the quadratic model of the terminal cost and the adjoint there; returns the cost.
   template <int Order>
-  double look_at_end(const P& problem, const Point& t, Lq& lq, double (&lambda)[kNx]) noexcept {
+  double linearise_end(const P& problem, const Point& t, Lq& lq, double (&lambda)[kNx]) noexcept {
     for (auto& row : lq.terminal) std::fill(std::begin(row), std::end(row), 0.0);
     const auto rows = Evaluate::template end<Order>(problem, t);
     double cost = 0.0;
@@ -128,7 +130,7 @@ class Linearisation {
     return cost;
   }
 
-  /// Stores a row of the end that must hold; the multiplier that belongs to its curvature.
+  /// Stores a hard row of the end; returns the multiplier of its curvature.
   template <class R>
   double keep_end_row(const P& problem, std::size_t n, const R& r, double value) noexcept {
     hard.store_end(n, value);
@@ -137,7 +139,7 @@ class Linearisation {
     });
     return problem.is_primal_dual ? hard.end_weight(problem, n) : value;
   }
-  /// The same of the stages, whose residuals count in `gradient` with their multipliers alone.
+  /// Stores the hard rows of stages. In the primal-dual method they count in `gradient` by their multipliers.
   template <int Order, class Row>
   void keep_rows(const P& problem, const Row& residual, std::size_t k0, Gradient& gradient) noexcept {
     each_row<V, Order>(residual, [&](auto n, const auto& r) CHICANE_INLINE {
@@ -147,7 +149,7 @@ class Linearisation {
         Entries::template add_gradient<void>(n, r, curvature_weight(problem, n, k0, r.v) - r.v, gradient);
     });
   }
-  /// Weight of residual n's curvature: its value, or a multiplier.
+  /// Weight of residual n's curvature: its value, or the multiplier of a hard row.
   V curvature_weight([[maybe_unused]] const P& problem, [[maybe_unused]] std::size_t n,
                      [[maybe_unused]] std::size_t k0, const V& value) const noexcept {
     if constexpr (kHasHardRows<P>) {
@@ -157,7 +159,7 @@ class Linearisation {
     return value;
   }
 
-  /// The share of one terminal residual: its gradient, Gauss–Newton's Hessian, and with Order 2 the rest.
+  /// Adds one terminal residual: its gradient, Gauss–Newton's Hessian, and with Order 2 its curvature.
   template <int Order, class R>
   CHICANE_INLINE static void add_end_row(const R& r, double value, [[maybe_unused]] double weight,
                                          Lq& lq) noexcept {
@@ -184,7 +186,7 @@ class Linearisation {
     }
   }
 
-  /// The eight stages from k0 on; those beyond the horizon count for nothing.
+  /// Linearises the eight stages from k0 on; stages beyond the horizon have no effect.
   template <int Order>
   void linearise_stages(const P& problem, const Point& t, std::size_t k0, const How& how, Slacks& slacks,
                         double (&lambda)[kNx], Lq& lq, Sums& sums) noexcept {
@@ -192,7 +194,7 @@ class Linearisation {
       if constexpr (is_compact<Pattern>()) return evaluate<Order>(problem, t, k0);
       if constexpr (!is_compact<Pattern>()) return Evaluate::template stages<Order>(problem, t, k0);
     }();
-    const auto live = stage_number(StageLanes<V>{static_cast<int>(k0)}) < V(static_cast<double>(t.horizon));
+    const auto live = stages_before<V>(k0, t.horizon);
     Jacobians f;
     Costs l;
     Gradient gradient;  // gradient of the stage cost with the current multipliers of the constraints
@@ -207,7 +209,7 @@ class Linearisation {
       if constexpr (Layout::is_large()) run_large_adjoint(t.horizon, k0, f, gradient, lambda);
       if constexpr (!Layout::is_large()) run_adjoint(t.horizon, k0, f, gradient, lambda);
     } else {
-      miss_adjoint(k0, f, gradient);
+      measure_states(k0, f, gradient);
     }
     measure(t, k0, live, f, gradient, lq, sums);
     if constexpr (Order == 2) {
@@ -219,12 +221,13 @@ class Linearisation {
       lq.set(k0, f, l);
     }
   }
-  /// A function of its own: quicker to build.
+  /// Evaluates the stages in a function that is not inlined, which compiles faster.
   template <int Order>
   [[gnu::noinline]] static auto evaluate(const P& problem, const Point& t, std::size_t k0) noexcept {
     return Evaluate::template stages<Order>(problem, t, k0);
   }
 
+  /// Sets Jacobians and defects of the dynamics.
   template <int Order, class Row, class Mask>
   CHICANE_INLINE static void collect_dynamics(const Row& next, const Point& t, std::size_t k0,
                                               const Mask& live, double defect_share, Jacobians& f,
@@ -239,7 +242,7 @@ class Linearisation {
     });
   }
 
-  /// ½‖r‖² with gradient and Gauss–Newton Hessian.
+  /// Adds ½‖r‖² with its gradient and Gauss–Newton Hessian.
   template <int Order, class Row, class Mask>
   CHICANE_INLINE static void add_residuals(const Row& residual, const Mask& live, Gradient& gradient,
                                            Costs& l, Sums& sums) noexcept {
@@ -254,8 +257,8 @@ class Linearisation {
     sums.cost += select(live, 0.5 * squares, V(0.0));
   }
 
-  /// Soft constraints: their multipliers to the gradient, their eliminated slacks to the quadratic program
-  /// (eq. 20, 21).
+  /// Adds soft constraints: their multipliers to the gradient, their eliminated slacks to the quadratic
+  /// program (eq. 20, 21).
   template <int Order, class Row,
             class Mask>  // NOLINTNEXTLINE(readability-function-size): all sums of a linearisation
   CHICANE_INLINE static void add_soft(const P& problem, const Row& constraint, std::size_t k0,
@@ -283,7 +286,7 @@ class Linearisation {
     });
   }
 
-  /// λ_k = g_x + Aᵀ λ_{k+1} through the stages of the group, last first. The only sequential part.
+  /// Runs λ_k = g_x + Aᵀ λ_{k+1} through the stages of the group, last first: the only sequential part.
   CHICANE_INLINE void run_adjoint(std::size_t horizon, std::size_t k0, const Jacobians& f,
                                   const Gradient& gradient, double (&lambda)[kNx]) noexcept {
     double now[kNx];  // kept in registers
@@ -305,7 +308,7 @@ class Linearisation {
     unroll<kNx>([&](auto i) CHICANE_INLINE { lambda[i] = now[i]; });
   }
 
-  /// The same in loops, where every entry counts.
+  /// Runs the adjoint in loops, for large problems with dense Jacobians.
   void run_large_adjoint(std::size_t horizon, std::size_t k0, const Jacobians& f, const Gradient& gradient,
                          double (&lambda)[kNx]) noexcept {
     for (std::size_t lane = std::min<std::size_t>(8, horizon - k0); lane-- > 0;) {
@@ -322,8 +325,8 @@ class Linearisation {
     }
   }
 
-  /// g_x + Aᵀ λ_{k+1} − λ_k of the group.
-  void miss_adjoint(std::size_t k0, const Jacobians& f, const Gradient& gradient) noexcept {
+  /// Sets state_residual of the group: g_x + Aᵀ λ_{k+1} − λ_k.
+  void measure_states(std::size_t k0, const Jacobians& f, const Gradient& gradient) noexcept {
     const auto store = [&](std::size_t j, const V& sum) {
       sum.store(state_residual[j] + k0);
       for (std::size_t lane = k0 == 0 ? 1 : 0; lane < 8; ++lane)
@@ -349,7 +352,7 @@ class Linearisation {
     }
   }
 
-  /// Slopes of the inputs, and how far they are from optimal (eq. 12); bounds on the step.
+  /// Sets slopes of the inputs, stationarity (eq. 12) and bounds on the step.
   template <class Mask>
   CHICANE_INLINE void measure(const Point& t, std::size_t k0, const Mask& live, const Jacobians& f,
                               const Gradient& gradient, Lq& lq, Sums& sums) noexcept {
@@ -373,7 +376,7 @@ class Linearisation {
     });
   }
 
-  /// Second-order terms that Gauss–Newton leaves out: Σ r ∇²r + λ ∇²f + z ∇²c (eq. 22).
+  /// Adds the second-order terms that Gauss–Newton leaves out: Σ r ∇²r + λ ∇²f + z ∇²c (eq. 22).
   template <class StageRows>
   CHICANE_INLINE void add_curvature(const P& problem, const StageRows& rows, std::size_t k0,
                                     const Slacks& slacks, Costs& l) const noexcept {

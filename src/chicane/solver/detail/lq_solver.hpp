@@ -14,22 +14,22 @@
 
 namespace chicane::solver {
 
-/// Result of a backward sweep for a stage. A free input follows δu = row · δx + constant; for a held one
-/// these are the slope d(cost to go)/dδu instead.
+/// Result of a backward sweep for a stage. row · δx + constant is the step δu of a free input, and the slope
+/// d(cost to go)/dδu of a held one.
 template <std::size_t Nu, std::size_t Lanes>
 struct alignas(64) Feedback {
-  double row[Nu][Lanes]{};
-  double constant[Nu]{};
-  double H[Nu][Nu]{};  ///< curvature of the cost to go in the inputs, as factorised
-  double g[Nu]{};      ///< slope at δu = 0
+  double row[Nu][Lanes]{};  ///< part in proportion to δx
+  double constant[Nu]{};    ///< constant part
+  double H[Nu][Nu]{};       ///< curvature of the cost to go in the inputs, as factorised
+  double g[Nu]{};           ///< slope at δu = 0
 };
 
-/// Solves min Σ ½ zᵀLz + terminal cost s.t. δx₀ given, δx⁺ = F z and bounds on δu, for one
-/// horizon (docs/solver.md, eq. 8–11). A backward sweep eliminates stage by stage with the inputs of the
-/// working set held at their bounds; a forward sweep finds the step and corrects the working set. Repeating
-/// both until nothing changes is the primal-dual active set method (Hintermüller, Ito, Kunisch 2003).
+/// Solver of min Σ ½ zᵀLz + terminal cost s.t. δx₀ given, δx⁺ = F z and bounds on δu, for one horizon
+/// (docs/solver.md, eq. 8–11). A backward sweep eliminates stage by stage with the inputs of the working set
+/// held at their bounds; a forward sweep finds the step and corrects the working set. Repeating both until
+/// nothing changes is the primal-dual active set method (Hintermüller, Ito, Kunisch 2003).
 ///
-/// The sweep knows the pattern: states are lanes of registers, and each stored entry of F costs one
+/// Sweeps are compiled for the pattern: states are lanes of registers, and each stored entry of F costs one
 /// multiply-add of whole registers. No allocation; time per sweep O(N).
 template <class Arch, class Pattern, std::size_t Capacity>
 class LqSolver {
@@ -44,12 +44,12 @@ class LqSolver {
   Hold hold[Lq::kStages][kNu]{};  ///< working set
   using Feedback = solver::Feedback<kNu, kLanes>;
   Feedback feedback[Lq::kStages]{};
-  alignas(64) double dx[Capacity + 1][kLanes]{};  ///< step of the states; of the first one as set, else 0
+  alignas(64) double dx[Capacity + 1][kLanes]{};  ///< step of the states; that of the first state is an input
   double du[Capacity][kNu]{};                     ///< step of the inputs
 
-  /// Factorises all stages with `shift` added to the input blocks. `choose`: take the working set of each
-  /// stage from its own small box problem (that is control-limited differential dynamic programming; the step
-  /// then descends). Returns the largest extra shift that an indefinite input block needed; 0 when none did.
+  /// Factorises all stages with `shift` added to the input blocks. `choose`: takes the working set of each
+  /// stage from its own small box problem, as control-limited differential dynamic programming does; the step
+  /// then descends. Returns the largest extra shift that an indefinite input block needed; 0 if none did.
   double backward(std::size_t horizon, double shift = 0.0, bool choose = false) noexcept {
     std::copy(&lq.terminal[0][0], &lq.terminal[0][0] + (kNx + 1) * kLanes, &value_[horizon][0][0]);
     if constexpr (kIsCompact) return sweep(horizon, shift, choose, false);
@@ -64,8 +64,8 @@ class LqSolver {
     if constexpr (kIsCompact) return sweep(horizon, shift, false, true);
     return sweep(horizon, shift, std::false_type{}, std::true_type{});
   }
-  /// The same after forward() has changed the working set: stages behind the last change are as they were.
-  /// Pre: the same problem.
+  /// Factorises again after forward() has changed the working set, from the last changed stage on. Pre: the
+  /// same problem.
   double backward_again(double shift = 0.0) noexcept {
     if constexpr (kIsCompact) return sweep(last_change_ + 1, shift, false, false);
     return sweep(last_change_ + 1, shift, std::false_type{}, std::false_type{});
@@ -96,7 +96,7 @@ class LqSolver {
     return found.count;
   }
 
-  /// The states that follow from the du as they are.
+  /// Computes the states that follow from the present du.
   void simulate(std::size_t horizon) noexcept {
     double x[kNx];
     unroll<kNx>([&](auto i) CHICANE_INLINE { x[i] = dx[0][i]; });
@@ -106,8 +106,7 @@ class LqSolver {
     }
   }
 
-  /// Multiplier of state i of x_k at the step's end, after forward(): of the dynamics that lead to
-  /// it.
+  /// Multiplier of the dynamics that lead to state i of x_k, at the end of the step; after forward().
   [[nodiscard]] double multiplier(std::size_t k, std::size_t i) const noexcept {
     double sum = value_[k][kNx][i];
     for (std::size_t j = 0; j < kNx; ++j) sum += value_[k][j][i] * dx[k][j];
@@ -123,7 +122,7 @@ class LqSolver {
   [[nodiscard]] double gain(std::size_t k, std::size_t m, std::size_t i) const noexcept {
     return hold[k][m] == Hold::kFree ? feedback[k].row[m][i] : 0.0;
   }
-  /// The part of du that does not depend on the state.
+  /// Part of an input's step that does not depend on the state.
   [[nodiscard]] double constant(std::size_t k, std::size_t m) const noexcept {
     return hold[k][m] == Hold::kFree ? feedback[k].constant[m] : bound(k, m, hold[k][m]);
   }
@@ -134,11 +133,12 @@ class LqSolver {
   using Vector = typename Algebra::Vector;
   using Value = typename Algebra::Value;
   using Block = InputBlock<Arch, kNu>;
-  /// Rounding errors that are not symmetric are averaged away every few stages.
+  /// Stages between two averages of P with its transpose, which remove rounding errors; chosen.
   static constexpr std::size_t kSymmetryPeriod = 8;
 
   static constexpr bool kIsCompact = is_compact<Pattern>();
-  /// `choose`, `shift_states`: types, with a sweep for each use; bools of compact solvers, with one for all.
+  /// Backward sweep from stage `from` on. `choose` and `shift_states` are types, with a sweep for each use,
+  /// or bools of compact solvers, with one sweep for all uses.
   template <class Choose, class ShiftStates>
   double sweep(std::size_t from, double shift, Choose choose, ShiftStates shift_states) noexcept {
     Value P;
@@ -168,6 +168,7 @@ class LqSolver {
     }
     return largest;
   }
+  /// Loads the value function of stage k.
   CHICANE_INLINE void load(std::size_t k, Value& P) const noexcept {
     if constexpr (Layout::is_large()) {
       for (std::size_t i = 0; i <= kNx; ++i) P.column[i] = Vector::load(value_[k][i]);
@@ -176,7 +177,7 @@ class LqSolver {
     }
   }
 
-  /// Backward step over one stage: the value function P of stage k + 1 becomes stage k's (eq. 9–11).
+  /// Backward step over one stage: turns the value function P of stage k + 1 into that of stage k (eq. 9–11).
   template <class Choose>  // NOLINTNEXTLINE(readability-function-size): one stage, in registers
   CHICANE_INLINE void eliminate(std::size_t k, Value& P, double shift, Choose choose,
                                 double& largest) noexcept {
@@ -191,6 +192,7 @@ class LqSolver {
     W[0] = Algebra::template times_jacobian<kNx>(s, P);
     W[0].store(w[0]);
     Algebra::settle(w);
+    // Curvature and slope of the cost to go in the inputs.
     Block block;
     unroll<kNu>([&](auto m) CHICANE_INLINE {
       unroll<m + 1>([&](auto l) CHICANE_INLINE {
@@ -201,7 +203,7 @@ class LqSolver {
       block.g[m] =
           Algebra::template times_column<kNx + 1 + m>(s, w[0], Algebra::template cost<kNx + 1 + m, kNx>(s));
     });
-    Vector R[kNu];  // Q over inputs and states
+    Vector R[kNu];  // rows of Q for the inputs, over the states
     alignas(64) double r[kNu][kLanes];
     unroll<kNu>([&](auto m) CHICANE_INLINE {
       R[m] = Algebra::template row_of_q<kNx + 1 + m>(s, W[1 + m], w[1 + m]);
@@ -212,8 +214,8 @@ class LqSolver {
 
     bool is_held[kNu];
     const bool any_held = settle_inputs(k, block, choose, is_held, largest);
-    double b[kNu] = {};  // values of held inputs
-    double g[kNu];       // slopes with them there
+    double b[kNu] = {};  // steps of held inputs
+    double g[kNu];       // slopes at these steps
     unroll<kNu>([&](auto m) CHICANE_INLINE { g[m] = block.g[m]; });
     if (any_held) substitute_held(k, block, is_held, R, b, g, q);
     Vector T[kNu];
@@ -239,8 +241,8 @@ class LqSolver {
     }
   }
 
-  /// Reads (or with `choose` chooses) which inputs are held, and inverts the free block, shifted until it is
-  /// positive definite. True when any input is held.
+  /// Sets which inputs are held, by the working set or, with `choose`, anew; inverts the free block, shifted
+  /// until it is positive definite. True if any input is held.
   template <class Choose>
   CHICANE_INLINE bool settle_inputs(std::size_t k, Block& block, Choose choose, bool (&is_held)[kNu],
                                     double& largest) noexcept {
@@ -263,7 +265,7 @@ class LqSolver {
     return any_held;
   }
 
-  /// The working set of stage k from its own box problem; returns the shift that the block needed.
+  /// Chooses the working set of stage k by its own box problem; returns the shift that the block needed.
   [[gnu::noinline]] double choose_hold(std::size_t k, Block& block) noexcept {
     SmallQp<kNu, Arch> box;
     for (std::size_t m = 0; m < kNu; ++m) {
@@ -281,7 +283,7 @@ class LqSolver {
     return extra;
   }
 
-  /// Inserts held inputs, and computes the slopes of the cost at them.
+  /// Inserts held inputs: their steps b, the slopes g and the gradient q with them.
   CHICANE_INLINE void substitute_held(std::size_t k, const Block& block, const bool (&is_held)[kNu],
                                       const Vector (&R)[kNu], double (&b)[kNu], double (&g)[kNu],
                                       Vector& q) const noexcept {
@@ -292,7 +294,7 @@ class LqSolver {
     });
   }
 
-  /// Keeps the slopes of held inputs for the forward sweep.
+  /// Stores the slopes of held inputs for the forward sweep.
   void hold_inputs(std::size_t k, const Block& block, const bool (&is_held)[kNu],
                    const double (&r)[kNu][kLanes]) noexcept {
     Vector slope[kNu];
@@ -317,8 +319,8 @@ class LqSolver {
   /// Contradictions to the working set in a forward sweep: their number, and the last one.
   struct Contradictions {
     int count = 0;
-    std::size_t stage = 0;
-    std::size_t input = 0;
+    std::size_t stage = 0;    ///< stage of the last one
+    std::size_t input = 0;    ///< input of the last one
     Hold next = Hold::kFree;  ///< new state of that input
     void add(std::size_t k, std::size_t m, Hold wanted) noexcept {
       ++count;
@@ -328,7 +330,7 @@ class LqSolver {
     }
   };
 
-  /// An input in the forward sweep: free at `value`, or held where its slope is `value`.
+  /// Step of an input in the forward sweep. `value` is the step of a free input, or the slope at a held one.
   CHICANE_INLINE double input(std::size_t k, std::size_t m, double value, Repair repair,
                               Contradictions& found) noexcept {
     const double low = lq.low[m][k], high = lq.high[m][k];
@@ -347,7 +349,7 @@ class LqSolver {
     return at == Hold::kHigh ? lq.high[m][k] : lq.low[m][k];
   }
 
-  alignas(64) double value_[Capacity + 1][kNx + 1][kLanes]{};  ///< P of every stage, to start again from
+  alignas(64) double value_[Capacity + 1][kNx + 1][kLanes]{};  ///< P of every stage, for backward_again()
   std::size_t last_change_ = 0;  ///< last stage whose working set forward() changed
 };
 

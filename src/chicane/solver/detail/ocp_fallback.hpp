@@ -10,9 +10,12 @@
 
 namespace chicane::solver {
 
-// Endings of OcpSolver: an answer from an iterate.
+// Parts of OcpSolver beside its iterations: endings, which make an answer of an iterate; recovery when full
+// steps fail; preparation and feedback.
 
-/// Admissible inputs and finite states, for when the data are not finite.
+// ---- endings
+
+/// Sets admissible inputs and finite states, for data that are not finite.
 template <OcpProblem P, int Capacity>
 CHICANE_INLINE inline void leave_admissible(const P& problem, const std::array<double, P::kNx>& x0,
                                             int horizon,
@@ -21,7 +24,7 @@ CHICANE_INLINE inline void leave_admissible(const P& problem, const std::array<d
   trajectory.horizon = horizon;
   trajectory.x[0] = x0;
   clamp_inputs(problem, trajectory);
-  for (auto& u : trajectory.u) {  // for bounds that no number satisfies
+  for (auto& u : trajectory.u) {  // bounds may be infinite or not a number
     for (double& value : u) value = std::isfinite(value) ? value : 0.0;
   }
   for (auto& x : trajectory.x) {
@@ -29,10 +32,10 @@ CHICANE_INLINE inline void leave_admissible(const P& problem, const std::array<d
   }
 }
 
-/// The worst violation of a soft constraint at the last linearisation, and the complementarity gap.
+/// Sets the worst violation of a soft constraint at the last linearisation, and the complementarity gap.
 template <OcpProblem P, class Slacks>
-void tell_violation(const P& problem, const Slacks& slacks, std::size_t horizon,
-                    SolveReport& report) noexcept {
+void report_violation(const P& problem, const Slacks& slacks, std::size_t horizon,
+                      SolveReport& report) noexcept {
   WorstViolation worst;
   for (std::size_t k = 0; k < horizon; ++k) {
     for (std::size_t c = 0; c < static_cast<std::size_t>(P::kNc); ++c)
@@ -42,7 +45,7 @@ void tell_violation(const P& problem, const Slacks& slacks, std::size_t horizon,
   report.gap = slacks.gap(horizon);
 }
 
-/// The data are not finite: leaves admissible inputs and finite states behind.
+/// Ends a solve whose data are not finite, with admissible inputs and finite states.
 template <OcpProblem P, int Capacity, class Arch>
 SolveReport OcpSolver<P, Capacity, Arch>::give_up(const P& problem, const State& x0, Trajectory& trajectory,
                                                   SolveReport report) noexcept {
@@ -50,9 +53,9 @@ SolveReport OcpSolver<P, Capacity, Arch>::give_up(const P& problem, const State&
   report.status = SolveStatus::kNotFinite;
   return report;
 }
-/// Constraints and multipliers are to be of the answer, and the report of both.
+/// Constraints, multipliers and, with the filter method, the report then belong to the best iterate.
 template <OcpProblem P, int Capacity, class Arch>
-void OcpSolver<P, Capacity, Arch>::look_at_best(const P& problem, SolveReport& report) noexcept {
+void OcpSolver<P, Capacity, Arch>::linearise_best(const P& problem, SolveReport& report) noexcept {
   is_exact_ = false;
   if constexpr (kCanFilter) {
     full_steps_ = true;
@@ -65,8 +68,8 @@ void OcpSolver<P, Capacity, Arch>::look_at_best(const P& problem, SolveReport& r
     linearise(problem, unused);
   }
 }
-/// Returns the best iterate, extended to the whole horizon; unless it is optimal, its residuals decide
-/// the status.
+/// Returns the best iterate, extended to the whole horizon. Without an optimum its residuals decide the
+/// status.
 template <OcpProblem P, int Capacity, class Arch>
 SolveReport OcpSolver<P, Capacity, Arch>::finish(SolveStatus status, const P& problem, Trajectory& trajectory,
                                                  SolveReport report) noexcept {
@@ -76,7 +79,7 @@ SolveReport OcpSolver<P, Capacity, Arch>::finish(SolveStatus status, const P& pr
     if (has_best_) {
       t_ = best_;
       report = best_report_;
-      if (!shows_best_) look_at_best(problem, report);
+      if (!shows_best_) linearise_best(problem, report);
     }
     if (kCanFilter && has_best_ && bring_inside()) linearise(problem, report);
     if (kCanFilter && !only_full_steps_ && !(has_best_ && is_close(report)))
@@ -94,7 +97,7 @@ SolveReport OcpSolver<P, Capacity, Arch>::finish(SolveStatus status, const P& pr
     status = SolveStatus::kInfeasible;
   }
   write(t_, trajectory);
-  tell_violation(problem, barrier_, t_.horizon, report);
+  report_violation(problem, barrier_, t_.horizon, report);
   report.status = status;
   return report;
 }
@@ -114,12 +117,11 @@ SolveReport OcpSolver<P, Capacity, Arch>::take_point(const P& problem, Trajector
                   : residual(report) <= options_.loose_tolerance ? SolveStatus::kBudgetSpent
                                                                  : SolveStatus::kStalled;
   t_.write(trajectory);
-  tell_violation(problem, barrier_, t_.horizon, report);
+  report_violation(problem, barrier_, t_.horizon, report);
   return report;
 }
 
-/// Inputs that iterations have left outside their bounds become the nearest inside. True when that moves one
-/// by more than rounding does.
+/// Moves inputs outside of their bounds to the nearest value inside. True if one moves by more than rounding.
 template <OcpProblem P, int Capacity, class Arch>
 bool OcpSolver<P, Capacity, Arch>::bring_inside() noexcept {
   constexpr double kMoved = 1e-12;  // change that is more than rounding, relative
@@ -134,9 +136,9 @@ bool OcpSolver<P, Capacity, Arch>::bring_inside() noexcept {
   return has_moved;
 }
 
-// OcpSolver's recovery when full steps fail: its use of the filter method.
+// ---- recovery when full steps fail
 
-/// Starts the filter method from the solve's start, or where it left off. False if that is of no use.
+/// Starts the filter method at the solve's start, or resumes it after an earlier use.
 template <OcpProblem P, int Capacity, class Arch>
 bool OcpSolver<P, Capacity, Arch>::begin_filter(const P& problem, const Trajectory& trajectory,
                                                 SolveReport& report) noexcept {
@@ -152,12 +154,13 @@ bool OcpSolver<P, Capacity, Arch>::begin_filter(const P& problem, const Trajecto
   return true;
 }
 
-/// Moves states and inputs by at most 1e-8 of their size, each by another amount, the same in each solve:
-/// where a start is symmetric, as with an obstacle dead ahead, steps would never choose a side.
+/// Moves states and inputs by at most 1e-8 of their size, each by another amount, the same in each solve.
+/// From a symmetric start, as with an obstacle straight ahead, steps would never choose a side.
 template <OcpProblem P, int Capacity, class Arch>
 void OcpSolver<P, Capacity, Arch>::break_symmetry() noexcept {
-  constexpr double kMove = 1e-8, kGolden = 0.6180339887498949;
-  double share = 0.0;  // equidistributed in [0, 1)
+  constexpr double kMove = 1e-8;                  // largest move, relative; chosen
+  constexpr double kGolden = 0.6180339887498949;  // golden ratio: its multiples are spread evenly
+  double share = 0.0;                             // equidistributed in [0, 1)
   const auto move = [&](double& value) {
     share += kGolden;
     share -= share >= 1.0 ? 1.0 : 0.0;
@@ -169,8 +172,8 @@ void OcpSolver<P, Capacity, Arch>::break_symmetry() noexcept {
   }
 }
 
-/// One iteration of it. Near the solution its working set goes to full steps, which converge faster. False at
-/// the end of the budget, or when it has lost its way, too.
+/// One iteration of the filter method. Near the solution full steps, which converge faster, continue with its
+/// working set. False at the end of the budget, or if the method is stuck.
 template <OcpProblem P, int Capacity, class Arch>
 bool OcpSolver<P, Capacity, Arch>::filter_iteration(const P& problem, const Deadline& deadline,
                                                     SolveReport& report) noexcept {
@@ -198,7 +201,7 @@ bool OcpSolver<P, Capacity, Arch>::follow_barrier(P& problem, const State& x0, T
                                                   const Deadline& deadline, int most, Begin begin,
                                                   SolveReport& report) noexcept {
   using Outcome = typename Filter::Outcome;
-  constexpr int kPatience = 20;  // short steps in succession; restoration takes any number
+  constexpr int kPatience = 20;  // limit of short steps in succession, except in restoration; chosen
   const int patience = problem.violation_penalty > 0.0 ? most : kPatience;
   filter_.take_rows(&problem);
   SolveReport last;
@@ -224,7 +227,7 @@ bool OcpSolver<P, Capacity, Arch>::follow_barrier(P& problem, const State& x0, T
   filter_.take_rows(nullptr);
   is_filtering_ = false;
   if (!has_begun) return false;
-  if (now_.hard.is_elastic()) {  // slopes of the violation alone, by an exact adjoint
+  if (now_.hard.is_elastic()) {  // restoration: slopes of the violation alone, by an exact adjoint
     is_solved = !bring_inside() && is_solved;
     problem.cost_root = 0.0;
     barrier_.forget_soft(problem);
@@ -239,7 +242,6 @@ bool OcpSolver<P, Capacity, Arch>::follow_barrier(P& problem, const State& x0, T
   return true;
 }
 
-/// The second rung: a short horizon first.
 template <OcpProblem P, int Capacity, class Arch>
 bool OcpSolver<P, Capacity, Arch>::start_short(const P& problem, const Trajectory& trajectory) noexcept {
   if (!take_guess(problem, trajectory)) t_ = best_;
@@ -295,11 +297,10 @@ void OcpSolver<P, Capacity, Arch>::record_filter_iteration(const SolveReport& re
   log_->set_step(filter_.moved());
 }
 
-/// Steps have become as short as rounding lets them: the present iterate, whose slacks and multipliers are
-/// known, is as good as any.
+/// If so, the present iterate, whose slacks and multipliers are known, becomes the best one.
 template <OcpProblem P, int Capacity, class Arch>
 bool OcpSolver<P, Capacity, Arch>::is_at_floor(const SolveReport& report) noexcept {
-  constexpr double kFloor = 1e-8;  // least change of the inputs
+  constexpr double kFloor = 1e-8;  // step over the largest input that counts as shortest; chosen
   if (!kCanFilter || !is_finite(report) || !has_best_ || !full_steps_ || is_growing() || !barrier_.is_final())
     return false;
   double largest = 1.0;
@@ -313,8 +314,8 @@ bool OcpSolver<P, Capacity, Arch>::is_at_floor(const SolveReport& report) noexce
   return shows_best_ = true;
 }
 
-/// Answer without a solution: the filter method's point if that is close; else the cheapest simulation of its
-/// inputs, the best iterate's and the guess's: no more than the guess.
+/// Takes the filter method's point if it is close to a solution; else the cheapest simulation of the inputs
+/// of that point, of the best iterate and of the guess. It never costs more than the guess.
 template <OcpProblem P, int Capacity, class Arch>
 void OcpSolver<P, Capacity, Arch>::take_cheapest(const P& problem, const Trajectory& trajectory,
                                                  SolveReport& report) noexcept {
@@ -353,7 +354,7 @@ void OcpSolver<P, Capacity, Arch>::take_cheapest(const P& problem, const Traject
   }
 }
 
-// Preparation and feedback of OcpSolver (docs/solver_guide.md).
+// ---- preparation and feedback (docs/solver_guide.md)
 
 template <OcpProblem P, int Capacity, class Arch>
 bool OcpSolver<P, Capacity, Arch>::prepare(const P& problem) noexcept {
@@ -363,7 +364,7 @@ bool OcpSolver<P, Capacity, Arch>::prepare(const P& problem) noexcept {
   SolveReport seen;
   linearise(problem, seen);
   const double extra = lq_.backward(t_.horizon);
-  if (extra > 0.0 && is_exact_) {  // indefinite: Gauss–Newton is not
+  if (extra > 0.0 && is_exact_) {  // exact Hessians are indefinite, Gauss–Newton's are not
     take_gauss_newton(problem);
     lq_.backward(t_.horizon);
   }
@@ -372,7 +373,7 @@ bool OcpSolver<P, Capacity, Arch>::prepare(const P& problem) noexcept {
 
 template <OcpProblem P, int Capacity, class Arch>
 FeedbackReport OcpSolver<P, Capacity, Arch>::feedback(const State& x0, Trajectory& trajectory) noexcept {
-  constexpr int kMaxSweeps = 20;
+  constexpr int kMaxSweeps = 20;  // limit of corrections of the working set; chosen
   using Repair = typename Lq::Repair;
   for (std::size_t i = 0; i < kNx; ++i) lq_.dx[0][i] = x0[i] - t_.x[i][0];
   FeedbackReport done;

@@ -11,13 +11,16 @@
 
 namespace chicane::solver {
 
-/// Compile-time knowledge of one entry of a Jacobian.
+// Patterns of the linear-quadratic problem: which entries can differ from zero, where they are stored, and
+// the storage itself.
+
+/// What is known at compile time of one entry of a Jacobian.
 enum class Entry : std::uint8_t { kZero, kOne, kValue };
 
-/// A pattern is a type that says which entries of the stages of a linear-quadratic problem can be other than
-/// zero, in z = (δx, 1, δu): F (δx⁺ = F z; column Nx, the defect, is always there) and L (cost ½ zᵀ L z,
-/// symmetric; its row and column Nx, the gradient, are read where L says so and the entry (Nx, Nx) never is).
-/// This one knows nothing: every entry counts.
+/// Pattern without zeros. A pattern is a type that names the entries of a linear-quadratic problem's stages
+/// that can differ from zero, in z = (δx, 1, δu): those of F (δx⁺ = F z; column Nx, the defect, is always
+/// stored) and of L (cost ½ zᵀ L z, symmetric; row and column Nx are the gradient, and the entry (Nx, Nx) is
+/// never stored).
 template <std::size_t Nx, std::size_t Nu>
 struct FullPattern {
   static constexpr std::size_t kNx = Nx;
@@ -35,8 +38,8 @@ struct FullPattern {
   }();
 };
 
-/// Whether code for a pattern is to compile quickly, `kIsCompact = true`: one sweep for all uses, loops where
-/// every entry counts. Some percent slower.
+/// Whether code for a pattern is compact, `kIsCompact = true`: one sweep for all uses, and loops over dense
+/// entries. It compiles faster and runs some percent slower.
 template <class Pattern>
 [[nodiscard]] constexpr bool is_compact() noexcept {
   if constexpr (requires { Pattern::kIsCompact; }) return Pattern::kIsCompact;
@@ -46,7 +49,7 @@ template <class Pattern>
 /// Limit of variables in a stage for unrolled code; beyond it blocks and loops are used.
 inline constexpr std::size_t kMostUnrolled = 24;
 
-/// Numbers the entries of a pattern that are stored.
+/// Numbers of the stored entries of a pattern.
 template <class Pattern>
 struct Layout {
   static constexpr std::size_t kNx = Pattern::kNx;
@@ -98,24 +101,24 @@ struct Layout {
     return count;
   }();
 
-  /// Entries of a row that belong to states.
+  /// Number of stored entries of a row that belong to states.
   static constexpr std::size_t count(const std::array<std::size_t, kNz>& row) noexcept {
     std::size_t stored = 0;
     for (std::size_t j = 0; j < kNx; ++j) stored += row[j] != kNone ? 1 : 0;
     return stored;
   }
 
-  /// Rows over the states that sweeps read as registers are kept as such where they are wide, with more than
-  /// two entries; the others are put together from numbers.
+  /// Entries up to which a row is narrow. Sweeps read rows over the states as registers: wide rows are stored
+  /// so, narrow ones are put together from numbers. Chosen.
   static constexpr std::size_t kNarrow = 2;
   static constexpr bool is_wide_cost(std::size_t i) noexcept { return count(kL[i]) > kNarrow; }
-  /// Whether state i of the next stage is its own value and something: that 1 is not stored.
+  /// Whether state i of the next stage is x_i plus a change: that 1 is not stored.
   static constexpr bool is_sum(std::size_t i) noexcept { return Pattern::kF[i][i] == Entry::kOne; }
   /// Whether F[i][j] is a 1 in a row over the states.
   static constexpr bool is_one(std::size_t i, std::size_t j) noexcept {
     return Pattern::kF[i][j] == Entry::kOne && j != i && j < kNx;
   }
-  /// Whether state i of the next stage depends on states in another way than as a sum.
+  /// Whether state i of the next stage depends on states beyond the 1 of a sum.
   static constexpr bool has_state_row(std::size_t i) noexcept {
     for (std::size_t j = 0; j < kNx; ++j) {
       if (is_one(i, j) || kF[i][j] != kNone) return true;
@@ -124,8 +127,9 @@ struct Layout {
   }
   static constexpr bool is_wide_state(std::size_t i) noexcept { return count(kF[i]) > kNarrow; }
 
-  /// The place of wide row i of F, and of L, among all.
+  /// Place of wide row i of F among all wide rows.
   static constexpr std::size_t wide_state(std::size_t i) noexcept { return kWidePlace[i]; }
+  /// Place of wide row i of L among all wide rows.
   static constexpr std::size_t wide_cost(std::size_t i) noexcept { return kWidePlace[kNx + i]; }
   static constexpr auto kWidePlace = [] {
     std::array<std::size_t, kNx + kNz + 1> places{};
@@ -135,7 +139,7 @@ struct Layout {
   }();
   static constexpr std::size_t kWideRows = wide_cost(kNz);
 
-  /// All entries that sweeps read as numbers, in one series; F[i][kOne], the defects, come first.
+  /// Numbering of the entries that sweeps read as numbers; F[i][kOne], the defects, come first.
   struct Numbers {
     JacobianTable f{};
     CostTable l{};
@@ -163,7 +167,7 @@ struct Layout {
   }();
   static constexpr std::size_t kNumbers = (kNumber.count + 7) / 8 * 8;
 
-  /// Whether each entry of F and L counts, and each row over the states is kept as such.
+  /// Whether all entries of F and L are stored, and all rows over the states are wide.
   static constexpr bool is_full() noexcept {
     bool is_full = kNx > kNarrow && kFCount == kNx * kNz;
     for (std::size_t i = 0; i < kNz; ++i) {
@@ -172,6 +176,7 @@ struct Layout {
     }
     return is_full;
   }
+  /// Whether a stage has too many variables for unrolled code.
   static constexpr bool is_large() noexcept { return kNx + kNu > kMostUnrolled; }
 };
 
@@ -191,7 +196,7 @@ struct LqProblem {
 
     [[nodiscard]] double defect(std::size_t i) const noexcept { return number[i]; }
   };
-  Stage stage[kStages]{};
+  Stage stage[kStages]{};                  ///< Jacobians and costs
   alignas(64) double low[kNu][kStages]{};  ///< bounds on δu; infinite where there are none
   alignas(64) double high[kNu][kStages]{};
   alignas(64) double terminal[kNx + 1][kLanes]{};  ///< P_N; its last row is the gradient
@@ -221,7 +226,7 @@ struct LqProblem {
       if constexpr (Layout::is_wide_cost(i)) write_row<i, false>(k, f, l);
     });
   }
-  /// The same by tables, in a loop: quicker to build.
+  /// Sets the eight stages from `k` on like set(), by tables in a loop, which compiles faster.
   template <class Arch>
   [[gnu::noinline]] void set_by_tables(std::size_t k, const std::array<Pack<Arch, 8>, Layout::kFCount>& f,
                                        const std::array<Pack<Arch, 8>, Layout::kLCount>& l) noexcept {
@@ -237,19 +242,20 @@ struct LqProblem {
     }
   }
 
-  /// Single entries of stage k, for code that does not work on eight stages at once. Pre: the pattern has
-  /// them.
+  /// Sets F[i][j] of stage k. Pre: the pattern has the entry.
   void set_jacobian(std::size_t k, std::size_t i, std::size_t j, double value) noexcept {
     Stage& s = stage[k];
     if (const std::size_t n = Layout::kNumber.f[i][j]; n != Layout::kNone) s.number[n] = value;
     if (j < kNx && Layout::is_wide_state(i)) s.wide[Layout::wide_state(i)][j] = value;
   }
+  /// Sets L[i][j] = L[j][i] of stage k. Pre: the pattern has the entry.
   void set_cost(std::size_t k, std::size_t i, std::size_t j, double value) noexcept {
     Stage& s = stage[k];
     if (const std::size_t n = Layout::kNumber.l[i][j]; n != Layout::kNone) s.number[n] = value;
     if (j < kNx && Layout::is_wide_cost(i)) s.wide[Layout::wide_cost(i)][j] = value;
     if (i < kNx && Layout::is_wide_cost(j)) s.wide[Layout::wide_cost(j)][i] = value;
   }
+  /// L[i][j] of stage k; 0 if the pattern does not have the entry.
   [[nodiscard]] double cost(std::size_t k, std::size_t i, std::size_t j) const noexcept {
     const Stage& s = stage[k];
     if (const std::size_t n = Layout::kNumber.l[i][j]; n != Layout::kNone) return s.number[n];

@@ -12,22 +12,26 @@
 
 namespace chicane::solver {
 
+// Compile-time check of a user's problem (solver/problem.hpp): each mistake gives one message that says what
+// to write.
+
 struct SoftPenalty;
 
+/// Number of entries of a row.
 template <class Row>
 inline constexpr int kRowSize = static_cast<int>(std::tuple_size_v<std::remove_cvref_t<Row>>);
 
 namespace detail {
 
-// ---- what a problem's functions are tried with
+// ---- arguments for trial calls of a problem's functions
 
 template <int... n>
 auto make_symbols(std::integer_sequence<int, n...>) -> std::tuple<std::enable_if_t<n >= 0, Symbol>...>;
 template <int Count>
 using Symbols = decltype(make_symbols(std::make_integer_sequence<int, Count>{}));
 
-/// Functions over variables of any types, tried with symbols: what no variable can do is refused here, first
-/// and once.
+/// Concept of functions that take variables of any types, tried with symbols. Operations that variables do
+/// not have are refused here, once.
 template <class P>
 concept TakesSymbols = requires(const P& p, const Symbols<P::kNx>& x, const Symbols<P::kNu>& u) {
   p.dynamics(0, x, u);
@@ -36,7 +40,7 @@ concept TakesSymbols = requires(const P& p, const Symbols<P::kNx>& x, const Symb
   requires P::kNc == 0 || requires { p.constraint(0, x, u); };
 };
 
-/// Rows of `count` entries: of a tuple or an array at level 2, an array of numbers at level 1.
+/// Arguments and results of the functions: tuples or arrays at level 2, arrays of numbers at level 1.
 template <class P, bool IsStructured>
 struct RowsOf {
   using X = Symbols<P::kNx>;
@@ -78,10 +82,10 @@ consteval int rows_of() {
   }
 }
 
-// ---- which members a problem has
+// ---- members of a problem
 
-// HasMember_name<P>: whether P has a member of that name, whatever it is: then it is ambiguous beside
-// another of the same name. Call_name: how the function is called.
+// HasMember_name<P>: whether P has a member of that name, of any kind; found by ambiguity with another of the
+// same name. Call_name: the call of the function.
 #define CHICANE_MEMBER(name)                                                 \
   template <class P>                                                         \
   struct HasMember_##name {                                                  \
@@ -125,7 +129,7 @@ CHICANE_MEMBER(terminal_constraint_name)
 #undef CHICANE_STAGE_FUNCTION
 #undef CHICANE_MEMBER
 
-// ---- the checks, in the order in which they are of use
+// ---- checks, in the order of their messages
 
 template <class P>
 concept HasSizes = requires {
@@ -149,7 +153,7 @@ consteval bool check_sizes() {
   return false;
 }
 
-// One function after the other: what one of them lacks is no reason for messages about the others.
+// Functions are checked one after the other, so that a mistake in one gives no messages about others.
 #define CHICANE_CHECK_FUNCTION(name, count, write)                                                         \
   template <class P>                                                                                       \
   consteval bool check_##name() {                                                                          \
@@ -167,7 +171,7 @@ CHICANE_CHECK_FUNCTION(dynamics, kNx, CHICANE_STAGE(dynamics))
 CHICANE_CHECK_FUNCTION(residual, kNr, CHICANE_STAGE(residual))
 CHICANE_CHECK_FUNCTION(terminal_residual, kNe, CHICANE_END(terminal_residual))
 CHICANE_CHECK_FUNCTION(constraint, kNc, "kNc > 0: " CHICANE_STAGE(constraint))
-// A count of 0 says that the function, which may be another class's, is left out: it is not called then.
+// A count of 0 means that the function is not used: it may belong to another class, and is not called.
 #define CHICANE_CHECK_OPTIONAL(name, count, write)                                         \
   CHICANE_CHECK_FUNCTION(name, count, #count " > 0: " write)                               \
   template <class P>                                                                       \
@@ -207,7 +211,7 @@ consteval bool check_bounds() {
   return kHasBounds && !kHasRate;
 }
 
-/// Whether constraints can be called on either level; else the problem is of neither.
+/// Whether constraints can be called on one of the levels.
 template <class P>
 consteval bool has_constraints() {
   if constexpr (P::kNc > 0) {
@@ -242,7 +246,7 @@ consteval bool check_constraints() {
   static_assert(kSaysHard || !HasMember_is_hard<P>::value, "write `bool is_hard(int constraint) const`");
   return is_good && (kSaysHard || !HasMember_is_hard<P>::value);
 }
-/// Names and switches that would be left out in silence where their form is another one.
+/// Checks names and switches, which would have no effect if their form were wrong.
 template <class P>
 consteval bool check_details() {
   constexpr auto kIsName = []<class Name>(std::type_identity<Name>) {
@@ -267,7 +271,7 @@ consteval bool check_details() {
          kIsGood_equality_name && kIsGood_terminal_equality_name && kIsGood_terminal_constraint_name;
 }
 
-/// Whether P is a problem. What is wrong is said by the compiler, in one sentence that says what to write.
+/// Whether P is a problem. The compiler's message names what to write.
 template <class P>
 consteval bool is_problem() {
   if constexpr (!check_sizes<P>())

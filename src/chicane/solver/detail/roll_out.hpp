@@ -15,14 +15,14 @@ namespace chicane::solver {
 
 /// Order in which the states of a whole horizon can be simulated, state after state instead of stage after
 /// stage. An order exists if each state depends on itself only as a sum, x_i⁺ = x_i + g_i(other states, u),
-/// and no two depend on each other: the first states then follow from the inputs alone, at all stages, the
-/// next ones from the first, and so on. A car's speed sums its accelerations, its heading sums its turns, and
-/// its position sums its motion.
+/// and no two states depend on each other. The first states then follow from the inputs alone, at all stages,
+/// the next ones from the first ones, and so on. Example: a car's speed sums its accelerations, its heading
+/// sums its turns, and its position sums its motion.
 template <class Pattern>
 struct StageOrder {
   static constexpr std::size_t kNx = Pattern::kNx;
 
-  /// 0: depends on inputs at most; n: on states below n.
+  /// Level of each state. 0: depends on inputs at most; n: depends on states of lower levels.
   static constexpr std::array<std::size_t, kNx> kLevel = [] {
     std::array<std::size_t, kNx> level{};
     for (std::size_t pass = 0; pass <= kNx; ++pass) {
@@ -39,9 +39,9 @@ struct StageOrder {
     for (const std::size_t level : kLevel) count = level >= count ? level + 1 : count;
     return count;
   }();
-  /// Whether x_i⁺ = x_i + …
+  /// Whether x_i⁺ is x_i plus a change.
   static constexpr bool is_sum(std::size_t i) noexcept { return Pattern::kF[i][i] == Entry::kOne; }
-  /// Whether there is such an order: in a circle of states levels rise for ever.
+  /// Whether an order exists: in a cycle of states levels rise without end.
   static constexpr bool kExists = [] {
     for (std::size_t i = 0; i < kNx; ++i) {
       if (Pattern::kF[i][i] == Entry::kValue) return false;
@@ -50,12 +50,12 @@ struct StageOrder {
   }();
 };
 
-/// Simulates inputs. Where the pattern allows it one state after the other with eight stages in lanes
+/// Simulation of inputs: one state after the other with eight stages in lanes if the pattern permits it
 /// (StageOrder), else stage after stage.
 ///
-/// Both ways add in the same order: where x_i + … is the last thing that a function does for a state, they
-/// give the same bits. What a pattern cannot show is a branch by select() on a state that no derivative
-/// belongs to; states of such a function may be off, and the defects of the first linearisation say so.
+/// Both ways add in the same order, and give the same bits if x_i + … is the last operation of a function for
+/// a state. A pattern does not show branches by select() on a state without a derivative; states of such a
+/// function may be wrong, which the defects of the first linearisation show.
 template <OcpProblem P, class Arch>
 class RollOut {
  public:
@@ -65,7 +65,7 @@ class RollOut {
   using Order = StageOrder<ProblemPattern<P>>;
   static constexpr bool kInLanes = StructuredProblem<P> && Order::kExists;
 
-  /// x_1 … x_N of `t` from its x_0 and inputs. True when every state is finite.
+  /// Sets x_1 … x_N of `t` by its x_0 and inputs. True if every state is finite.
   template <class Point>
   static bool run(const P& problem, Point& t) noexcept {
     if constexpr (kInLanes) {
@@ -73,7 +73,7 @@ class RollOut {
     } else {
       simulate_stages(problem, t);
     }
-    V all(0.0);  // only a number that is not finite makes a difference
+    V all(0.0);  // stays 0 unless a number is not finite
     for (std::size_t k = 0; k <= t.horizon; k += 8) {
       const auto live = stage_number(StageLanes<V>{static_cast<int>(k)}) <= V(static_cast<double>(t.horizon));
       for (std::size_t i = 0; i < kNx; ++i) all += select(live, 0.0 * V::load(t.x[i] + k), V(0.0));
@@ -83,8 +83,8 @@ class RollOut {
 
  private:
   using Evaluate = Evaluation<P, Arch>;
-  /// Eight stages under a name that makes each level's call a function of its own: called once, it is
-  /// inlined, and unused results are removed.
+  /// Eight stages with a type for each level, which makes the call of each level a function of its own:
+  /// called once, it is inlined, and unused results are removed.
   template <std::size_t>
   struct LanesOfLevel : StageLanes<V> {};
 
@@ -98,8 +98,8 @@ class RollOut {
     }
   }
 
-  /// All stages of the states of one level; those that they depend on are known. What a function says of
-  /// other states is not used, and so never computed.
+  /// Simulates all stages of the states of one level, after those of lower levels. Results for other states
+  /// are not used, and so never computed.
   template <std::size_t Level, class Point>
   static void simulate_level(const P& problem, Point& t) noexcept {
     double now[kNx];  // running value of each sum
@@ -139,7 +139,8 @@ class RollOut {
     return sum[7] + by_stage[7];
   }
 
-  static constexpr double kNothing = -0.0;  ///< x + kNothing is x, of zeros, too
+  static constexpr double kNothing =
+      -0.0;  ///< neutral number: x + kNothing is x, also for zeros of both signs
 };
 
 }  // namespace chicane::solver

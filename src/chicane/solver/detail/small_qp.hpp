@@ -15,13 +15,13 @@ namespace chicane::solver {
 /// State of an input in the working set: free, or at one of its bounds.
 enum class Hold : std::int8_t { kLow = -1, kFree = 0, kHigh = 1 };
 
-/// The working-set rule of the primal-dual active set method: an input beyond a bound is held there, a held
-/// one whose cost falls towards the inside (`slope` = dJ/du) is let go. `curvature` scales the tolerance; an
-/// interval without width is always held.
+/// Working-set rule of the primal-dual active set method: an input beyond a bound becomes held there; a held
+/// one whose cost falls towards the inside (`slope` = dJ/du) becomes free. `curvature` scales the tolerance.
+/// An input whose bounds are equal is always held.
 [[nodiscard]] CHICANE_INLINE inline Hold next_hold(Hold hold, double u, double slope, double low, double high,
                                                    double curvature) noexcept {
-  constexpr double kTolerance = 1e-10;  // [unit of the input]
-  constexpr double kRounding = 1e-3;    // of a slope, over curvature times that
+  constexpr double kTolerance = 1e-10;  // [unit of the input] rounding of an input; chosen
+  constexpr double kRounding = 1e-3;    // rounding of a slope over curvature times kTolerance; chosen
   if (!(high > low)) return Hold::kLow;
   if (hold == Hold::kFree) {
     if (u > high + kTolerance) return Hold::kHigh;
@@ -32,8 +32,8 @@ enum class Hold : std::int8_t { kLow = -1, kFree = 0, kHigh = 1 };
   return inward > kTolerance * (1.0 + kRounding * std::fabs(curvature)) ? Hold::kFree : hold;
 }
 
-/// min ½ uᵀ H u + gᵀ u s.t. low <= u <= high for a handful of inputs: the box problem of one stage. `Arch`
-/// only separates the code of files that are compiled for different instruction sets.
+/// Box problem of one stage: min ½ uᵀ H u + gᵀ u s.t. low <= u <= high for a few inputs. `Arch` only
+/// separates the code of files that are compiled for different instruction sets.
 template <std::size_t N, class Arch = arch::Native>
 struct SmallQp {
   double H[N][N]{};
@@ -43,8 +43,8 @@ struct SmallQp {
   Hold hold[N]{};
   double u[N]{};
 
-  /// Adds the smallest of a rising series of shifts to the diagonal that makes the free block positive
-  /// definite; returns it.
+  /// Adds shifts to the diagonal until the free block is positive definite; returns their sum. The first is
+  /// 1e-8 of the diagonal, each further one three times the sum of those before (chosen).
   double make_positive() noexcept {
     double diagonal = 0.0;
     for (std::size_t i = 0; i < N; ++i) diagonal = std::max(diagonal, std::fabs(H[i][i]));
@@ -57,8 +57,7 @@ struct SmallQp {
     return added;
   }
 
-  /// Finds u and the working set: active-set iterations first; if they should cycle, coordinate descent,
-  /// which cannot.
+  /// Finds u and the working set by active-set iterations, or by coordinate descent if they cycle.
   void solve() noexcept {
     for (std::size_t iteration = 0; iteration < 4 * N; ++iteration) {
       solve_free();
@@ -76,6 +75,7 @@ struct SmallQp {
   }
 
  private:
+  /// Whether the free block is safely positive definite.
   [[nodiscard]] bool is_positive() const noexcept {
     double A[N][N];
     std::copy(&H[0][0], &H[0][0] + N * N, &A[0][0]);
@@ -89,6 +89,7 @@ struct SmallQp {
     return true;
   }
 
+  /// Sets held inputs to their bounds and solves for the free ones.
   void solve_free() noexcept {
     double A[N][N];
     double b[N];
@@ -120,6 +121,7 @@ struct SmallQp {
     }
   }
 
+  /// Coordinate descent: 50 rounds (chosen).
   void descend() noexcept {
     for (std::size_t i = 0; i < N; ++i) u[i] = std::clamp(0.0, low[i], high[i]);
     for (int round = 0; round < 50; ++round) {
@@ -134,9 +136,9 @@ struct SmallQp {
   }
 };
 
-/// The inputs' part of one stage's elimination: their curvature H and slope g, and the inverse of the free
-/// part of H as adjugate · scale (so that the rest of the stage need not wait for the division). Rows and
-/// columns of held inputs are zero in it. In closed form for up to three inputs.
+/// Inputs in the elimination of one stage: their curvature H and slope g, and the inverse of the free part of
+/// H as adjugate · scale, so that the rest of the stage need not wait for the division. Its rows and columns
+/// of held inputs are zero. In closed form for up to three inputs.
 template <class Arch, std::size_t Nu>
 struct InputBlock {
   double H[Nu][Nu];
@@ -144,7 +146,7 @@ struct InputBlock {
   double adjugate[Nu][Nu];
   double scale;
 
-  /// Inverts the free part. False, and no inverse, when that is not safely positive definite.
+  /// Inverts the free part. False, without an inverse, if it is not safely positive definite.
   [[nodiscard]] CHICANE_INLINE bool invert(const bool (&is_held)[Nu]) noexcept {
     double A[Nu][Nu];
     unroll<Nu>([&](auto m) CHICANE_INLINE {
@@ -155,7 +157,7 @@ struct InputBlock {
     unroll<Nu>([&](auto m) CHICANE_INLINE { adjugate[m][m] = is_held[m] ? 0.0 : adjugate[m][m]; });
     return positive;
   }
-  /// The same where no input is held.
+  /// Inverts H when no input is held.
   [[nodiscard]] CHICANE_INLINE bool invert() noexcept { return invert_all(H); }
 
   /// Row m of the adjugate times v.
@@ -166,8 +168,7 @@ struct InputBlock {
     return sum;
   }
 
-  /// Adds the smallest of a rising series of shifts that makes the free part positive definite, and inverts
-  /// it; returns the shift.
+  /// Adds shifts as SmallQp::make_positive() does, and inverts the free part; returns their sum.
   [[gnu::noinline, gnu::cold]] double shift_and_invert(const bool (&is_held)[Nu]) noexcept {
     double diagonal = 0.0;
     for (std::size_t m = 0; m < Nu; ++m)
@@ -219,7 +220,7 @@ struct InputBlock {
     }
   }
 
-  /// Gauss and Jordan, last input first.
+  /// Inverts by Gauss–Jordan elimination, last input first.
   bool eliminate(const double (&A)[Nu][Nu]) noexcept {
     bool positive = true;
     scale = 1.0;

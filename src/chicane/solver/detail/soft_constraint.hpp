@@ -8,22 +8,21 @@
 namespace chicane::solver {
 
 /// One soft constraint c <= 0 inside the interior-point method: violation s >= 0 and distance t = s − c >= 0
-/// with multipliers n and z. Both slacks are eliminated in closed form, so a stage sees only a multiplier and
-/// a curvature (docs/solver.md, eq. 14–21):
+/// with multipliers n and z. Both slacks are eliminated in closed form, so that a stage contains only a
+/// multiplier and a curvature (docs/solver.md, eq. 14–21):
 ///
 ///     min  linear · s + ½ quadratic · s² − μ log s − μ log t   over s, t = s − c
 ///
 /// V is double, or a pack with one stage, or one problem, in each lane; μ is one number, or a pack as well.
 template <class V = double>
 struct SoftConstraint {
-  static constexpr double kMustHold =
-      -1.0;  ///< the cap of constraints whose penalty keeps them from violation
+  static constexpr double kMustHold = -1.0;  ///< cap that marks hard constraints
 
   V value{0.0};  ///< c at the iterate
-  V s{1.0};
-  V t{1.0};
-  V n{1.0};
-  V z{1.0};  ///< multiplier of the constraint: d(cost)/dc
+  V s{1.0};      ///< slack of violation
+  V t{1.0};      ///< slack of distance
+  V n{1.0};      ///< multiplier of s
+  V z{1.0};      ///< multiplier of t and of the constraint: d(cost)/dc
 
   /// Contribution of the eliminated slacks to the quadratic program: multiplier `slope` + `curvature` · δc.
   struct Model {
@@ -31,11 +30,11 @@ struct SoftConstraint {
     V curvature;
   };
 
-  /// Puts (s, t, n, z) on the central path for the present value: an interior point always exists and needs
-  /// no memory. Newton's method for linear + quadratic · s = μ/s + μ/t on the smaller slack, from the
+  /// Puts (s, t, n, z) on the central path for the present value: such a point always exists. Eight steps
+  /// (chosen) of Newton's method for linear + quadratic · s = μ/s + μ/t on the smaller slack, from the
   /// solution for quadratic = 0.
   CHICANE_INLINE void centre(const SoftPenalty& penalty, const auto& mu) noexcept {
-    if (penalty.cap == kMustHold) {  // no room for a violation: it stays a residual
+    if (penalty.cap == kMustHold) {  // the slacks have no room for a violation, which stays a residual
       s = V(1.0) * (mu / penalty.linear);
       t = max(-value, 1e-2 * max(abs(value), V(1.0)));
       n = mu / s;
@@ -63,6 +62,7 @@ struct SoftConstraint {
     z = mu / t;
   }
 
+  /// Model of the constraint with its slacks eliminated at barrier μ.
   [[nodiscard]] Model model(const SoftPenalty& penalty, const auto& mu) const noexcept {
     const V D = z / t;
     const V E = n / s + penalty.quadratic;
@@ -93,18 +93,19 @@ struct SoftConstraint {
     return d;
   }
 
-  /// Smoothed penalty: the minimum above. Pre: centred at `mu`.
+  /// Smoothed penalty: the minimum over both slacks. Pre: centred at `mu`.
   [[nodiscard]] V barrier(const SoftPenalty& penalty, const auto& mu) const noexcept {
     return s * (penalty.linear + 0.5 * penalty.quadratic * s) - mu * (log(s) + log(t));
   }
 
-  /// The exact penalty, without slacks.
+  /// Exact penalty, without slacks.
   [[nodiscard]] V penalty(const SoftPenalty& penalty) const noexcept {
     const V beyond = max(value, V(0.0));
     return beyond * (penalty.linear + 0.5 * penalty.quadratic * beyond);
   }
 
  private:
+  /// Force on the violation slack when t follows s.
   [[nodiscard]] V pull(const SoftPenalty& penalty, const auto& mu, const V& miss) const noexcept {
     return mu / t + mu / s - z / t * miss - penalty.linear - penalty.quadratic * s;
   }

@@ -10,8 +10,8 @@
 
 namespace chicane::solver {
 
-/// The products of the backward sweep (docs/solver.md, eq. 9) with the states as lanes of registers: each
-/// entry that a pattern stores is one multiply-add of whole registers, and entries that are zero are none.
+/// Products of the backward sweep (docs/solver.md, eq. 9) with the states as lanes of registers. Each stored
+/// entry of a pattern costs one multiply-add of whole registers, and zeros cost nothing.
 template <class Arch, class Pattern, class Stage>
 class StageAlgebra {
  public:
@@ -189,14 +189,14 @@ class StageAlgebra {
     }
   }
 
-  /// The same where every entry counts, in a loop; J: the constant or an input.
+  /// P F, column j, for dense patterns, in a loop; j: the constant or an input.
   static Vector times_jacobian_in_loops(const Stage& s, const Value& P, std::size_t j) noexcept {
     Vector sum = j == kNx ? P.column[kNx] : Vector::zero();
     for (std::size_t i = 0; i < kNx; ++i) sum.add(s.number[Layout::kNumber.f[i][j]], P.column[i]);
     return sum;
   }
 
-  /// States whose next value is theirs and something, as lanes.
+  /// 1 in the lanes of states that are sums (Layout::is_sum()), else 0.
   alignas(64) static constexpr std::array<double, kLanes> kSums = [] {
     std::array<double, kLanes> lanes{};
     for (std::size_t i = 0; i < kNx; ++i) lanes[i] = Layout::is_sum(i) ? 1.0 : 0.0;
@@ -208,7 +208,7 @@ class StageAlgebra {
     }
     return false;
   }();
-  /// sum + the lanes of w that belong to such states.
+  /// Adds the lanes of w that belong to sums.
   CHICANE_INLINE static void add_sums(Vector& sum, const Vector& w) noexcept {
     if constexpr (kHasSums) {
       unroll<kBlocks>([&](auto b) CHICANE_INLINE {
@@ -266,7 +266,7 @@ class StageAlgebra {
     return inputs;
   }
 
-  /// P of the states: Aᵀ P A + L, less the saving by the inputs.
+  /// Turns P of the states into Aᵀ P A + L, less the part that the inputs save.
   CHICANE_INLINE static void eliminate_states(const Stage& s, const Vector (&T)[kNu], double scale,
                                               const double (&r)[kNu][kLanes], Value& P) noexcept {
     Vector Wx[kNx];
@@ -288,7 +288,7 @@ class StageAlgebra {
     });
   }
 
-  /// The same where every entry counts: column by column in a loop, in the order of the products above.
+  /// eliminate_states() for dense patterns: column by column in a loop, with products in the same order.
   CHICANE_INLINE static void eliminate_full(const Stage& s, const Vector (&T)[kNu], double scale,
                                             const double (&r)[kNu][kLanes], Value& P) noexcept {
     alignas(64) double wx[kNx][kLanes];
@@ -368,7 +368,7 @@ class StageAlgebra {
     }
   }
 
-  /// x becomes F z.
+  /// Replaces x by F z.
   CHICANE_INLINE static void advance(const Stage& s, double (&x)[kNx], const double (&u)[kNu]) noexcept {
     double next[kNx];
     if constexpr (Layout::is_large()) {
@@ -404,27 +404,27 @@ class StageAlgebra {
     for (std::size_t i = 0; i < kNx; ++i) x[i] = next[i];
   }
 
-  /// Keeps the compiler from taking numbers out of registers that are cheaper to load from memory.
+  /// Makes the compiler load numbers from memory, which is cheaper than taking them out of registers.
   template <class Memory>
   CHICANE_INLINE static void settle(Memory& memory) noexcept {
     asm volatile("" : "+m"(memory));  // NOLINT: no instruction
   }
 
-  /// Rounding errors that are not symmetric would grow like an uncontrolled system: averaged away every few
-  /// stages.
+  /// Averages P with its transpose: rounding errors that are not symmetric would grow like an uncontrolled
+  /// system.
   CHICANE_INLINE static void make_symmetric(Value& P) noexcept {
     unroll<kBlocks>([&](auto a) CHICANE_INLINE {
       unroll<a + 1>([&](auto b) CHICANE_INLINE { average_blocks<a, b>(P); });
     });
   }
-  /// A function of its own: quicker to build.
+  /// make_symmetric() in a function that is not inlined, which compiles faster.
   [[gnu::noinline]] static void make_symmetric_apart(Value& P) noexcept {
     Value changed = P;
     make_symmetric(changed);
     P = changed;
   }
 
-  /// The block in columns a and rows b, and the one across from it.
+  /// Averages the block in columns A and rows B with the transpose of the block in columns B and rows A.
   template <std::size_t A, std::size_t B>
   CHICANE_INLINE static void average_blocks(Value& P) noexcept {
     V upper[kBlock];

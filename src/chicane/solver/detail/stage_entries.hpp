@@ -17,13 +17,16 @@
 
 namespace chicane::solver {
 
+// From a problem's functions to its quadratic program: the pattern, and the sums of jets into entries of
+// stages.
+
 /// Position of variable `i` of (x, u) in z = (x, 1, u).
 template <class P>
 constexpr std::size_t in_z(int i) noexcept {
   return static_cast<std::size_t>(i < P::kNx ? i : i + 1);
 }
 
-/// The jet that stores every derivative of a stage: what problems of level 1 are called with.
+/// Jet that stores every derivative of a stage: the scalar of level 1.
 template <class P, class V, int Order>
 using DenseJet =
     Jet<V, Order, first_variables(P::kNx + P::kNu), 0,
@@ -75,8 +78,8 @@ struct RowSets<Row, std::index_sequence<n...>> : JetSets<JetOf<std::tuple_elemen
 
 }  // namespace detail
 
-/// Whether the solver knows second derivatives of the problem: unless it says `kGaussNewton = true`, to be
-/// built in a fraction of the time where exact Hessians are not wanted.
+/// Whether the solver uses second derivatives of the problem: not with `kGaussNewton = true`, which compiles
+/// in a fraction of the time.
 template <class P>
 [[nodiscard]] constexpr bool has_hessians() noexcept {
   if constexpr (requires { P::kGaussNewton; }) return !P::kGaussNewton;
@@ -89,8 +92,8 @@ template <class P>
   return StructuredProblem<P> || kHasSparseRows<P>;
 }
 
-/// Whether the solver has the filter method for this problem: unless it says `kRealTime = true`, for budgets
-/// of a few iterations.
+/// Whether the solver has the filter method for this problem: not with `kRealTime = true`, for budgets of a
+/// few iterations.
 template <class P>
 [[nodiscard]] constexpr bool has_filter_method() noexcept {
   if constexpr (requires { P::kRealTime; }) return !P::kRealTime;
@@ -177,8 +180,8 @@ template <class J, std::size_t N>
 requires requires { J::kIsDense; }
 inline constexpr bool kIsDenseRow<std::array<J, N>> = J::kIsDense;
 
-/// Calls visit(n, jet) for each result of a problem's function. Of a tuple, n is a constant; of an array
-/// whose jets store everything, a number: loops are quicker to compile.
+/// Calls visit(n, jet) for each result of a problem's function. n is a constant for a tuple, and a number for
+/// an array whose jets store everything, because loops compile faster.
 template <class V, int Order, class Row, class Visit>
 CHICANE_INLINE inline void each_row(const Row& row, const Visit& visit) noexcept {
   constexpr std::size_t count = std::tuple_size_v<Row>;
@@ -196,7 +199,8 @@ CHICANE_INLINE inline void each_row(const Row& row, const Visit& visit) noexcept
   }
 }
 
-/// Calls visit(j, slope) for each variable that a result depends on, or for all where its type does not say.
+/// Calls visit(j, slope) for each variable that a result depends on, or for all if its type does not name
+/// them.
 template <class V, class J, class Visit>
 CHICANE_INLINE inline void each_slope(const J& row, const Visit& visit) noexcept {
   if constexpr (AnySparseRow<J>) {
@@ -211,8 +215,8 @@ CHICANE_INLINE inline void each_slope(const J& row, const Visit& visit) noexcept
   }
 }
 
-/// The entries of eight stages of the quadratic program while they are added up, as packs over the stages:
-/// for problems whose every entry counts.
+/// Sums of the entries of eight stages of the quadratic program, as packs over the stages, for dense
+/// problems.
 template <OcpProblem P, class V>
 struct StageEntries {
   static constexpr std::size_t kVariables = static_cast<std::size_t>(P::kNx + P::kNu);
@@ -224,6 +228,7 @@ struct StageEntries {
   static constexpr std::size_t z(std::size_t i) noexcept { return i < P::kNx ? i : i + 1; }
   static_assert(Layout::kFCount == Layout::kNx * Layout::kNz, "every entry is stored, row after row");
 
+  /// Sets row i of the Jacobian and its defect.
   template <class J>
   static void set_jacobian(std::size_t i, const J& row, const V& defect, Jacobians& f) noexcept {
     V* const to = f.data() + i * Layout::kNz;
@@ -290,8 +295,8 @@ struct StageEntries {
   }
 };
 
-/// Adds rows of structured problems: entries that are zero by type are absent, and the first row with an
-/// entry sets it.
+/// Sums of the entries of eight stages for structured problems: entries that are zero by type are absent, and
+/// the first row with an entry sets it.
 template <StructuredProblem P, class V>
 struct StageEntries<P, V> {
   static constexpr int kVariables = P::kNx + P::kNu;
@@ -309,7 +314,7 @@ struct StageEntries<P, V> {
     });
     f[Layout::kF[I][Layout::kOne]] = defect;
   }
-  /// Sets to zero what no row of `Rows` has.
+  /// Sets entries to zero that no row of `Rows` has.
   template <class Rows>
   CHICANE_INLINE static void clear(Gradient& gradient, Costs& l) noexcept {
     using Sets = detail::RowSets<Rows>;
@@ -369,7 +374,7 @@ struct StageEntries<P, V> {
       visit(std::integral_constant<int, i>{}, jet::slope<i>(r));
     });
   }
-  /// Whether row N is the first of `Rows` with variables i and j. Rows that only add are not (Rows = void).
+  /// Whether row N is the first of `Rows` with variables i and j. False for rows that only add (Rows = void).
   template <class Rows, class N>
   static constexpr bool is_first(int i, int j) noexcept {
     if constexpr (std::is_void_v<Rows>) {

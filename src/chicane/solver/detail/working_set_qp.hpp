@@ -10,25 +10,25 @@
 
 namespace chicane::solver {
 
-/// Solves the quadratic program of one iteration by corrections of its working set, else stage by stage
-/// (docs/solver.md, "Bounds: primal-dual active set").
+/// Solves the quadratic program of one iteration by corrections of its working set, or stage by stage if the
+/// working set cycles (docs/solver.md, "Bounds: primal-dual active set").
 template <class Lq>
 class WorkingSetQp {
  public:
   using Repair = typename Lq::Repair;
 
-  /// A fresh problem: the next backward sweep chooses the working set.
+  /// Lets the next backward sweep choose the working set, as for a fresh problem.
   void choose(bool chooses) noexcept { chooses_ = chooses; }
 
   enum class Outcome {
     kSolved,
     kCircles,  ///< no step: the working set cycles
-    kSpent     ///< nor here: the deadline came first
+    kSpent     ///< no step: the deadline is spent
   };
 
-  /// Leaves the step in `lq`; adds to `sweeps`. `is_exact`: the stages have exact Hessians, which
-  /// `take_gauss_newton()` replaces where they are indefinite, and unsets. With `may_circle` nothing else is
-  /// tried where the working set cycles.
+  /// Leaves the step in `lq`; adds to `sweeps`. `is_exact`: whether the stages have exact Hessians;
+  /// take_gauss_newton() replaces indefinite ones and sets `is_exact` to false. With `may_circle` a cycle
+  /// ends the solve; else the stages' own box problems give a step.
   template <class TakeGaussNewton>
   Outcome solve(Lq& lq, std::size_t horizon, const bool& is_exact, const TakeGaussNewton& take_gauss_newton,
                 const Deadline& deadline, bool may_circle, int& sweeps) noexcept {
@@ -41,22 +41,22 @@ class WorkingSetQp {
   }
 
  private:
-  /// Sweeps that may correct the whole working set in vain.
+  /// Sweeps in succession that may correct the whole working set without progress; chosen.
   static constexpr int kChances = 5;
 
-  /// Corrects all at once as long as that lowers the number of corrections, then one by one if there are few.
-  /// The very first set solves the stages' own box problems.
+  /// Corrects the whole working set as long as that lowers the number of corrections, then input by input if
+  /// few are left. The first working set solves the stages' own box problems.
   template <class TakeGaussNewton>
   Outcome correct(Lq& lq, std::size_t horizon, const bool& is_exact, const TakeGaussNewton& take_gauss_newton,
                   const Deadline& deadline, int& sweeps) noexcept {
-    constexpr int kMaxSweeps = 20;
+    constexpr int kMaxSweeps = 20;  // chosen
     int fewest = std::numeric_limits<int>::max();
     int chances = kChances;
     ++sweeps;
     double extra = lq.backward(horizon, 0.0, chooses_);
     chooses_ = false;
     for (int sweep = 1; sweep < kMaxSweeps; ++sweep) {
-      if (extra > 0.0 && is_exact) {  // indefinite: Gauss–Newton is not
+      if (extra > 0.0 && is_exact) {  // exact Hessians are indefinite, Gauss–Newton's are not
         take_gauss_newton();
         ++sweeps;
         extra = lq.backward(horizon);
@@ -73,7 +73,7 @@ class WorkingSetQp {
     return Outcome::kCircles;
   }
 
-  bool chooses_ = false;
+  bool chooses_ = false;  ///< choose()
 };
 
 }  // namespace chicane::solver
