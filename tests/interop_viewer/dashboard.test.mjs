@@ -145,16 +145,6 @@ describe('the dashboard', () => {
     await dashboard.until(camera, differentFrom(first), 'another camera');
     await dashboard.camera('Track');
     await page.evaluate(() => document.activeElement.blur());
-    await page.keyboard.press('Space');
-    await page.getByText('Paused', { exact: true }).waitFor();
-    await page.keyboard.press('Space');
-    await page.getByText('Live', { exact: true }).waitFor();
-    await dashboard.button('Pause').focus();
-    await page.keyboard.press('Space'); // pauses, once
-    await page.getByText('Paused', { exact: true }).waitFor();
-    await page.keyboard.press('Enter');
-    await page.getByText('Live', { exact: true }).waitFor();
-
     await page.keyboard.press('?');
     await page.getByRole('dialog', { name: 'Keys' }).waitFor();
     assert.ok((await page.locator('kbd').count()) > 15);

@@ -60,26 +60,10 @@ const server = new WebSocketServer({ port: 0, host: '127.0.0.1', handleProtocols
 const subscribed = new Map(); // subscription by channel
 const viewer = new Promise((resolve) => {
   server.on('connection', (socket) => {
-    socket.send(
-      JSON.stringify({
-        op: 'serverInfo',
-        name: 'one hour',
-        capabilities: [],
-        supportedEncodings: ['cdr'],
-        metadata: {},
-        sessionId: 'hour',
-      }),
-    );
+    socket.send(JSON.stringify({ op: 'serverInfo', capabilities: [], sessionId: 'hour' }));
     const advertised = channels.map(({ id, topic, schemaId }) => {
-      const { name, data } = reader.schemasById.get(schemaId);
-      return {
-        id,
-        topic,
-        encoding: 'cdr',
-        schemaName: name,
-        schemaEncoding: 'ros2msg',
-        schema: new TextDecoder().decode(data),
-      };
+      const schema = new TextDecoder().decode(reader.schemasById.get(schemaId).data);
+      return { id, topic, encoding: 'cdr', schema };
     });
     socket.send(JSON.stringify({ op: 'advertise', channels: advertised }));
     socket.on('message', (text) => {

@@ -16,7 +16,6 @@ const here = browserAlone();
 async function laps(dashboard, count) {
   await dashboard.until(dashboard.laps, atLeast(count), `${count} laps`);
 }
-const type = (dashboard, key, value) => dashboard.type(key, value);
 
 describe('a lap', () => {
   const folder = mkdtempSync(join(tmpdir(), 'chicane-laps-'));
@@ -36,7 +35,7 @@ describe('a lap', () => {
     await laps(dashboard, 1);
     assert.equal(await page.locator('.lap-rows th', { hasText: 'Driven with' }).count(), 0, 'nothing to tell yet');
     await dashboard.show('try');
-    await type(dashboard, 'latency_ms', 60);
+    await dashboard.type('latency_ms', 60);
     await dashboard.show('understand');
     const before = await dashboard.lapRows().count();
     await laps(dashboard, before + 2);

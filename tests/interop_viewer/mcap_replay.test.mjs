@@ -131,18 +131,8 @@ describe('a session with an external simulator', () => {
     const [served, simulated] = [join(folder, 'served.mcap'), join(folder, 'simulated.mcap')];
     const server = await startProgram('serve', ['--record', served]);
     const url = `ws://127.0.0.1:${server.port}/socket.io/?EIO=4&transport=websocket`;
-    await chicane(
-      'simulate',
-      '--connect',
-      url,
-      '--laps',
-      '1',
-      '--set',
-      'time_limit_s=4',
-      '--record',
-      simulated,
-      '--compress',
-    );
+    const recording = ['--record', simulated, '--compress'];
+    await chicane('simulate', '--connect', url, '--laps', '1', '--set', 'time_limit_s=4', ...recording);
     assert.equal(await server.stop('SIGINT'), 0);
     const verified = await chicane('replay', served, '--verify', '--json');
     assert.equal(verified.code, 0, verified.stdout);

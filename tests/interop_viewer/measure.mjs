@@ -193,15 +193,8 @@ if (isWanted('race')) {
       `${told('p50')} / ${told('p999')}`,
     );
   }
-  const moved =
-    quantile(
-      all.both.map((each) => each.p999),
-      0,
-    ) -
-    quantile(
-      all.alone.map((each) => each.p999),
-      0,
-    );
+  const best = (runs) => Math.min(...runs.map(({ p999 }) => p999));
+  const moved = best(all.both) - best(all.alone);
   row('p99.9 of the control step moves by, better run of each', `${(moved / 1000).toFixed(3)} ms`, '< 1 ms');
 }
 await browser.close();

@@ -11,8 +11,6 @@ import { browserAlone } from './here.mjs';
 const url = pathToFileURL(process.env.CHICANE_PAGE ?? 'index.html').href;
 const here = browserAlone();
 
-const type = (dashboard, key, value) => dashboard.type(key, value);
-
 /** What the program's own run gives with the arithmetic that WebAssembly has. */
 async function programHash(...args) {
   const { stdout } = await promisify(execFile)(process.env.CHICANE, ['drive', '--fast', '--json', ...args], {
@@ -24,7 +22,7 @@ async function programHash(...args) {
 describe('the page that needs no program', () => {
   it('drives the run of the program, bit for bit, at twenty times the pace', async () => {
     const dashboard = await DashboardPage.open(here.browser, url);
-    await type(dashboard, 'run.pace', 20);
+    await dashboard.type('run.pace', 20);
     await dashboard.show('watch');
     const card = dashboard.page.getByTestId('end-card');
     await card.waitFor();
@@ -38,7 +36,7 @@ describe('the page that needs no program', () => {
     const dashboard = await DashboardPage.open(here.browser, url, { mode: 'try' });
     await dashboard.page.locator('.choices').getByLabel('Track', { exact: true }).selectOption('oval');
     await dashboard.button('Restart').click();
-    await type(dashboard, 'run.pace', 20);
+    await dashboard.type('run.pace', 20);
     await dashboard.show('watch');
     await dashboard.page.getByTestId('end-card').waitFor();
     assert.equal(await dashboard.text('state-hash'), await programHash('--track', 'oval'));

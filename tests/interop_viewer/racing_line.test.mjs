@@ -2,7 +2,7 @@
 // The line of the fastest lap, as the page draws it: on the map and in three dimensions, for who wants it.
 import assert from 'node:assert/strict';
 import { it } from 'node:test';
-import { above, atLeast, below, DashboardPage, PHONE } from './dashboard_page.mjs';
+import { above, atLeast, below, DashboardPage } from './dashboard_page.mjs';
 import { browserAndDrive } from './here.mjs';
 
 const here = browserAndDrive(['--track', 'oval']); // whose limit takes a second of work
@@ -12,8 +12,8 @@ const isOn = async (page) => String((await line(page).count()) > 0);
 
 let state = 'Live';
 /** The page with a run that stands still, once the program has found the line. */
-async function open(options) {
-  const dashboard = await DashboardPage.open(here.browser, here.drive.url, { state, ...options });
+async function open() {
+  const dashboard = await DashboardPage.open(here.browser, here.drive.url, { state });
   const { page } = dashboard;
   await line(page).waitFor();
   if (state === 'Paused') return dashboard;
@@ -89,20 +89,5 @@ it('is drawn in three dimensions, and left away', async () => {
   await page.locator('.map.has-3d').waitFor();
   await toggles(dashboard, 'canvas.map-3d', 5);
   assert.deepEqual(await dashboard.accessibilityFindings('.stage'), []);
-  await close(dashboard);
-});
-
-it('leaves the car in sight on a phone, light and dark', async () => {
-  const dashboard = await open(PHONE);
-  const { page } = dashboard;
-  for (const colorScheme of ['light', 'dark']) {
-    await page.emulateMedia({ colorScheme });
-    await dashboard.until(
-      () => violet(page, 'canvas.map-2d'),
-      ({ fields }) => fields >= 5,
-      `the racing line, ${colorScheme}`,
-    );
-    assert.deepEqual(await dashboard.accessibilityFindings('.stage', ['color-contrast']), []);
-  }
   await close(dashboard);
 });

@@ -107,32 +107,6 @@ describe('a recording in the page', () => {
     assert.deepEqual(await dashboard.accessibilityFindings('main'), []);
   });
 
-  it('is played slower and faster', async () => {
-    const position = async () => {
-      const [minutes, seconds] = (await time(page)).split(':').map((text) => Number.parseFloat(text));
-      return 60 * minutes + seconds;
-    };
-    /** What is played in a second of the page's own clock, over two of them [s/s]. */
-    async function rate() {
-      const [from, begin] = [await position(), performance.now()];
-      await page.waitForTimeout(2000);
-      return ((await position()) - from) / ((performance.now() - begin) / 1000);
-    }
-    await dashboard.beginAt('understand');
-    await scrub(page, 5);
-    await page.locator('body').press('[');
-    await page.locator('body').press('[');
-    await page.getByText('0.25× speed', { exact: true }).waitFor();
-    await dashboard.button('Play').click();
-    const slow = await rate();
-    await dashboard.fromMenu('4×');
-    await page.getByText('4× speed', { exact: true }).waitFor();
-    const fast = await rate();
-    assert.ok(slow > 0 && fast > 3 * slow, `${slow}, then ${fast}`); // sixteen times, were the machine not busy
-    await page.keyboard.press('Space');
-    await page.getByText('Recording', { exact: true }).waitFor();
-  });
-
   it('says what belongs to the recording and cannot be changed', async () => {
     await dashboard.show('try');
     await page.getByText('Both drive from').waitFor();

@@ -8,8 +8,6 @@ import { browserAlone } from './here.mjs';
 
 const here = browserAlone();
 
-const summary = (dashboard) => dashboard.summary();
-
 describe('a link to a run', () => {
   let from;
   let link;
@@ -26,15 +24,11 @@ describe('a link to a run', () => {
     link = await page.getByLabel('Link', { exact: true }).inputValue();
     const { hash, pathname, search } = new URL(link);
     assert.equal(pathname + search, '/', 'no token in it');
-    assert.deepEqual(Object.fromEntries(new URLSearchParams(hash.slice('#run?'.length))), {
-      track: 'hairpins',
-      car: 'road-car',
-      preset: 'default',
-      controller: 'tracking-mpc',
-      seed: '7',
-      latency_ms: '80',
-      'plant_options.friction_scale': '0.9',
-    });
+    assert.match(
+      hash,
+      /^#run\?track=hairpins&car=road-car&preset=default&controller=tracking-mpc&seed=7&latency_ms=80&/,
+    );
+    assert.match(hash, /&plant_options\.friction_scale=0\.9$/);
     assert.equal(
       await page.getByLabel('Command', { exact: true }).inputValue(),
       'chicane drive --preset default --track hairpins --car road-car --seed 7 --set latency_ms=80 ' +
@@ -56,11 +50,11 @@ describe('a link to a run', () => {
     const wanted = (await asked.locator('li').allInnerTexts()).map((text) => text.replace(/\s+/g, ' '));
     for (const line of ['track oval → hairpins', 'car udacity → road-car', 'seed 1 → 7', 'latency_ms 100 → 80'])
       assert.ok(wanted.includes(line), `${line} in ${wanted.join(', ')}`);
-    assert.match(await summary(dashboard), /oval/, 'nothing before the answer');
+    assert.match(await dashboard.summary(), /oval/, 'nothing before the answer');
     assert.ok(!page.url().includes('#run'), 'a reload does not ask again');
     assert.deepEqual(await dashboard.accessibilityFindings(), []);
     await dashboard.button('Drive it').click();
-    await dashboard.until(() => summary(dashboard), /road-car · hairpins · 80 ms/, 'the run of the link');
+    await dashboard.until(dashboard.summary, /road-car · hairpins · 80 ms/, 'the run of the link');
     const limit = (await dashboard.setting('tracking_mpc.speed_limit_mps')).locator('.number-box');
     await dashboard.until(() => limit.inputValue(), '60', 'what the link does not mention, as the preset gives it');
     await dashboard.show('try');
@@ -77,7 +71,7 @@ describe('a link to a run', () => {
   it('names nothing but what the program brings along', async () => {
     const dashboard = await DashboardPage.open(here.browser, from.url);
     const { page } = dashboard;
-    const before = await summary(dashboard);
+    const before = await dashboard.summary();
     // Opened in a tab that is there already.
     await page.evaluate(() => {
       location.hash = '#run?track=%2Fetc%2Fpasswd&run.pace=20&laps=1';
@@ -87,7 +81,7 @@ describe('a link to a run', () => {
     await page.getByTestId('notice').waitFor();
     assert.match(await dashboard.text('notice'), /Track cannot be \/etc\/passwd: choose one of /);
     assert.doesNotMatch(await dashboard.text('notice'), /root:/);
-    assert.equal(await summary(dashboard), before);
+    assert.equal(await dashboard.summary(), before);
     await dashboard.close();
   });
 
@@ -95,7 +89,7 @@ describe('a link to a run', () => {
     const dashboard = await DashboardPage.open(here.browser, from.url, { mode: 'run?track=oval' });
     await dashboard.button('Keep this run').click();
     await dashboard.page.getByTestId('wanted').waitFor({ state: 'detached' });
-    assert.match(await summary(dashboard), /hairpins/);
+    assert.match(await dashboard.summary(), /hairpins/);
     await dashboard.close();
   });
 });

@@ -70,11 +70,8 @@ describe('what if, in a live run', () => {
     await page.getByLabel('From when').selectOption('line');
     await page.getByLabel('For how long').selectOption('lap');
     await askForLess(dashboard, 25);
-    await dashboard.until(
-      () => verdict(dashboard),
-      (text) => /^speed limit 25.*: \d+\.\d\d s slower to the same place/i.test(text),
-      'an answer from the line on',
-    );
+    const slower = /^speed limit 25.*: \d+\.\d\d s slower to the same place/i;
+    await dashboard.until(() => verdict(dashboard), slower, 'an answer from the line on');
     await dashboard.type(SPEED, 9999);
     await page.getByText('Drive both', { exact: true }).click();
     await page.locator('main [role="alert"]', { hasText: /Speed limit cannot be 9999: choose / }).waitFor();
@@ -97,15 +94,11 @@ describe('what if, in a live run', () => {
 it('another future of a recording begins at the moment that is shown', async () => {
   const folder = mkdtempSync(join(tmpdir(), 'chicane-what-if-'));
   const log = join(folder, 'run.mcap');
-  execFileSync(process.env.CHICANE, ['drive', '--fast', '--track', 'oval', '--laps', '2', '--record', log], {
-    stdio: 'ignore',
-  });
+  const words = ['drive', '--fast', '--track', 'oval', '--laps', '2', '--record', log];
+  execFileSync(process.env.CHICANE, words, { stdio: 'ignore' });
   const replay = await startProgram('replay', [log]);
-  const dashboard = await DashboardPage.open(here.browser, replay.url, {
-    ...PHONE,
-    mode: 'try',
-    state: 'Recording',
-  });
+  const options = { ...PHONE, mode: 'try', state: 'Recording' };
+  const dashboard = await DashboardPage.open(here.browser, replay.url, options);
   const { page } = dashboard;
   await page.getByLabel('Position in the recording').evaluate((slider) => {
     slider.value = '10';
@@ -127,15 +120,9 @@ describe('what if, of a car that another program simulates', () => {
   /** `serve` and a simulator that drives to it. */
   async function startServed(...args) {
     const serve = await startProgram('serve', args);
-    const simulator = spawn(
-      process.env.CHICANE,
-      [
-        'simulate',
-        ...['--connect', `ws://127.0.0.1:${serve.port}/socket.io/?EIO=4&transport=websocket`],
-        ...['--track', 'oval', '--laps', '0'],
-      ],
-      { stdio: 'ignore' },
-    );
+    const address = `ws://127.0.0.1:${serve.port}/socket.io/?EIO=4&transport=websocket`;
+    const words = ['simulate', '--connect', address, '--track', 'oval', '--laps', '0'];
+    const simulator = spawn(process.env.CHICANE, words, { stdio: 'ignore' });
     return {
       ...serve,
       async stop() {

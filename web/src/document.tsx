@@ -1,11 +1,10 @@
+// Page of results (recordings, sweep, league, identification, import): draws the JSON that the program wrote into it.
 import { render } from 'preact';
 import { DocumentView } from './document/document_view';
 import type { ReportDocument } from './document/model';
 import { type RunsDocument, readRuns, verdictOf } from './document/runs';
 import { RunsView } from './document/runs_view';
 import { scheme } from './lib/appearance';
-
-// The page of a recording, a sweep, a league, an identification or an import: what the program wrote into it, drawn.
 
 const root = document.getElementById('app');
 const text = document.getElementById('chicane-report')?.textContent;

@@ -1,3 +1,4 @@
+// The dashboard: connects the source of messages with the state, adds the keyboard shortcuts and renders the page.
 import { computed, effect } from '@preact/signals';
 import { render } from 'preact';
 import { toggleScheme } from './lib/appearance';
@@ -6,7 +7,7 @@ import { refusalInWords } from './lib/refusal';
 import { store } from './lib/store';
 import { nextSpeedUnit } from './lib/units';
 import { WorkerLink } from './page/worker_link';
-import { Connection, SUBPROTOCOLS } from './protocol/connection';
+import { Connection, SUBPROTOCOLS, viewerUrl } from './protocol/connection';
 import type { Socket } from './protocol/foxglove';
 import { ReadingSocket } from './protocol/reading';
 import { readSchema } from './protocol/schema';
@@ -38,8 +39,10 @@ import { TourView } from './views/tour_view';
 import { zoom } from './views/track_view';
 import { focusSearch } from './views/try_view';
 
+/** Session of the program that was connected last. */
 const session = store.data('page', () => ({ name: null as string | null }));
 
+/** Loads the descriptions of all settings. */
 async function loadSchema(): Promise<void> {
   try {
     const answer = await programPage('schema.json');
@@ -49,12 +52,13 @@ async function loadSchema(): Promise<void> {
   }
 }
 
-/** Asked while the program is there: the command that starts it again is shown when it has ended. */
+/** Loads the name by which the program was started; its command is shown after it has ended. */
 async function loadProgramName(): Promise<void> {
   const name = await programPage('command.txt').catch(() => null);
   if (name) programName.value = name;
 }
 
+/** Takes the number of frames of the past that are still to come. */
 function tellPastLeft(messages: number): void {
   pastLeft.value = messages;
   receivePastLeft(messages, performance.now());
@@ -68,21 +72,19 @@ function opener(): () => Socket {
     answerBy((path) => worker.get(`/${path}`));
     return () => new ReadingSocket(worker.open(), handlers, { acknowledges: false });
   }
-  const url = new URL('viewer', location.href);
-  url.search = '?past&paced'; // the frames of the last minutes, behind the newest; no more than arrives in time
-  url.protocol = location.protocol === 'https:' ? 'wss:' : 'ws:';
+  // The frames of the last minutes follow the newest one; no more are sent than arrive in time.
+  const url = viewerUrl('?past&paced');
   return () => new ReadingSocket(new WebSocket(url, SUBPROTOCOLS), handlers);
 }
 
+/** The program as the source of messages. */
 function live(): Source {
   return new Connection(opener(), {
     open(name) {
       // The program sends its run from the beginning, whenever the page comes.
       const isOther = name !== session.name;
       beginSession(isOther);
-      if (isOther) {
-        if (session.name !== null) rememberRun();
-      }
+      if (isOther && session.name !== null) rememberRun();
       session.name = name;
       link.value = 'live';
       attempt.value = 0;
@@ -137,6 +139,7 @@ addShortcuts(
 function show(next: Mode): void {
   mode.value = next;
 }
+/** Shows Try, with the search focused. */
 function search(): void {
   show('try');
   focusSearch();
@@ -180,6 +183,7 @@ addEventListener('keyup', (event) => {
     event.preventDefault();
 });
 
+/** The whole page. */
 function App() {
   const TimelineView = timeline.value;
   return (

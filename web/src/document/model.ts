@@ -1,14 +1,15 @@
+// Format of a page of results; written by src/chicane/protocol/json.hpp.
 import type { Plot } from '../parts/plot';
 import type { Table } from '../parts/table';
 
-// What the program writes of its results: src/chicane/protocol/json.hpp.
-
+/** A page of results. */
 export interface ReportDocument {
   readonly kind: 'sweep' | 'league' | 'identify' | 'import';
   readonly title: string;
   readonly sections: readonly Section[];
 }
 
+/** A part of the page with a title of its own, or none. */
 export interface Section {
   readonly title: string;
   readonly parts: readonly Part[];
@@ -16,6 +17,7 @@ export interface Section {
 
 export type Part = Prose | Table | Plot;
 
+/** A paragraph. */
 export interface Prose {
   readonly part: 'text';
   readonly text: string;

@@ -12,36 +12,22 @@ function documentOf(name: string, speeds: readonly number[], more: object = {}):
   speeds.forEach((speed, lap) => {
     for (let since = lap === 0 ? 0 : STEP_S / 2; since < LENGTH / speed; since += STEP_S) {
       const angle = (2 * Math.PI * since * speed) / LENGTH;
-      const where = { s_m: since * speed, x_m: 64 * Math.cos(angle), y_m: 64 * Math.sin(angle) };
-      const more = { rung: 0, is_gated: 0, active_faults: lap === 1 ? 1 : 0, off_track_events: 0 };
-      rows.push({
-        time_s: time + since,
-        lap,
-        lap_time_s: since,
-        last_lap_time_s: last,
-        speed_mps: speed,
-        ...where,
-        ...more,
-      });
+      const where = { s_m: since * speed, x_m: 64 * Math.cos(angle), y_m: 64 * Math.sin(angle), speed_mps: speed };
+      const when = { time_s: time + since, lap, lap_time_s: since, last_lap_time_s: last };
+      rows.push({ ...when, ...where, rung: 0, is_gated: 0, active_faults: lap === 1 ? 1 : 0, off_track_events: 0 });
     }
     last = LENGTH / speed;
     time += last;
   });
   const columns = Object.keys(rows[0] ?? {});
   const circle = Array.from({ length: 201 }, (_, i) => (2 * Math.PI * i) / 200);
+  const choice = { track: ['ring'], car: ['udacity'], preset: ['default'] };
   return {
     name,
     settings: 'track: ring\n',
     runs: [
       {
-        run: {
-          track: ['ring'],
-          car: ['udacity'],
-          preset: ['default'],
-          track_length_m: [LENGTH],
-          latency_s: [0.1],
-          fault_names: ['blind'],
-        },
+        run: { ...choice, track_length_m: [LENGTH], latency_s: [0.1], fault_names: ['blind'] },
         limit: null,
         laps: speeds.map((speed, i) => ({
           lap: [i + 1],
@@ -73,14 +59,8 @@ describe('the report of recordings', () => {
 
   it('compares the best lap with the limit, of the same rounding', () => {
     const places = Array.from({ length: 101 }, (_, i) => i * 4);
-    const limit = {
-      is_known: [1],
-      lap_time_s: [20],
-      first_lap: [1],
-      s_m: places,
-      time_s: places.map((s) => s / 20),
-      speed_mps: places.map(() => 20),
-    };
+    const columns = { s_m: places, time_s: places.map((s) => s / 20), speed_mps: places.map(() => 20) };
+    const limit = { is_known: [1], lap_time_s: [20], first_lap: [1], ...columns };
     const runs = readRuns({ kind: 'runs', logs: [documentOf('a.mcap', [10, 16, 15], { limit })] });
     const [run] = runs;
     const courses = coursesOf(runs);

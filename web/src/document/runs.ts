@@ -1,3 +1,5 @@
+// Report of recordings: reads the JSON of src/chicane/recording/html_report.cpp, samples the laps along the road and
+// words the result.
 import { begunBits } from '../lib/bits';
 import { fixed, lapTime, plural } from '../lib/format';
 import { capital } from '../lib/words';
@@ -12,10 +14,10 @@ import { shortly } from '../state/lap_setup';
 import { bestOf } from '../state/lap_table';
 import { isSameRoad } from '../state/other_laps';
 
-// What the program writes of recordings into a report: src/chicane/recording/html_report.cpp.
-
+/** Fields of a message, each as a list. */
 type Lists = Readonly<Record<string, readonly (number | string | null)[]>>;
 
+/** A report of recordings. */
 export interface RunsDocument {
   readonly kind: 'runs';
   readonly logs: readonly {
@@ -25,6 +27,7 @@ export interface RunsDocument {
   }[];
 }
 
+/** A run of a recording: its messages, and its frames as columns. */
 interface DrivenRun {
   readonly run: Lists | null;
   readonly limit: Lists | null;
@@ -53,6 +56,7 @@ function messageOf<T extends object>(unknown: T, lists: Lists): T {
 /** One run of a recording. */
 export type ReportedRun = Readonly<ReturnType<typeof readRun>>;
 
+/** Frames from a list for each of their columns. */
 function framesOf(columns: Lists): Frame[] {
   const names = Object.keys(columns);
   return (columns.time_s ?? []).map((_, row) => {
@@ -62,7 +66,7 @@ function framesOf(columns: Lists): Frame[] {
   });
 }
 
-/** `name`: of the recording, with a number where it holds several runs. */
+/** Reads one run; `name` is that of the recording, with a number where it holds several runs. */
 function readRun(driven: DrivenRun, name: string, recording: string, settings: string) {
   const run = messageOf(UNKNOWN_RUN, driven.run ?? {});
   const laps = driven.laps.map((each) => messageOf(UNKNOWN_LAP, each));
@@ -108,6 +112,7 @@ function readRun(driven: DrivenRun, name: string, recording: string, settings: s
   };
 }
 
+/** All runs of all recordings, with their laps sampled along the road. */
 export const readRuns = ({ logs }: RunsDocument): ReportedRun[] =>
   logs.flatMap(({ name, settings, runs }) =>
     runs.map((run, i) => readRun(run, runs.length > 1 ? `${name}, run ${i + 1}` : name, name, i === 0 ? settings : '')),
@@ -150,11 +155,11 @@ export function firstPair(runs: readonly ReportedRun[], courses: readonly Course
   return a && b ? [a, b] : null;
 }
 
-export function compareIn({ samples, corners }: ReportedRun, a: Course, b: Course): Comparison | null {
-  const line = samples.place(0) - samples.s(0);
-  return compare(a, b, { samples, corners, line: Number.isFinite(line) ? line : 0 });
-}
+/** A against B on the road of a run. */
+export const compareIn = ({ samples, corners }: ReportedRun, a: Course, b: Course): Comparison | null =>
+  compare(a, b, { samples, corners, line: samples.line });
 
+/** Numbers up to twelve in words. */
 const COUNTS = 'no one two three four five six seven eight nine ten eleven twelve'.split(' ');
 const counted = (count: number, noun: string): string =>
   `${COUNTS[count] ?? count} ${plural(count, noun).replace(/^\d+ /, '')}`;
@@ -169,7 +174,7 @@ export function verdictOf({ laps, run, limit }: ReportedRun): { text: string; ti
   return { text, time: lapTime(best.lap_time_s, 3), behind: Number.isFinite(behind) ? `${fixed(behind, 2)} s` : '' };
 }
 
-/** Who drove what, how near the edge came, and what was unusual. */
+/** Sentences below the verdict: car and controller, the edge of the road, interventions, faults and changes. */
 export function leadOf({ run, offTrack, interventions, leastEdge, faults, changes, laps }: ReportedRun): string {
   const byHand = laps.some(({ by_hand_share: share }) => share > 0);
   const edge = Number.isFinite(leastEdge) ? `; the nearest was ${fixed(leastEdge, 2)} m from the edge` : '';

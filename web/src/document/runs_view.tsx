@@ -1,3 +1,5 @@
+// View of the report of recordings: a verdict for each run, where the time is lost, all laps, and figures of the
+// solver.
 import { useState } from 'preact/hooks';
 import { fixed } from '../lib/format';
 import { capital } from '../lib/words';
@@ -10,6 +12,7 @@ import { byCost, causesOf } from '../state/comparison';
 import { bestOf } from '../state/lap_table';
 import { compareIn, coursesOf, firstPair, leadOf, type ReportedRun, verdictOf } from './runs';
 
+/** Sentence on the laps of a run, and what was unusual. */
 function Verdict({ of, level }: { of: ReportedRun; level: 1 | 2 }) {
   const Heading = `h${level}` as const;
   const { text, time, behind } = verdictOf(of);
@@ -53,7 +56,7 @@ function Spent({ of: { limit, laps } }: { of: ReportedRun }) {
   );
 }
 
-/** A against B among all runs of one road, by the sentence. */
+/** A against B, chosen in the heading among the laps of all runs on one road. */
 function Where({ runs }: { runs: readonly ReportedRun[] }) {
   const [courses] = useState(() => coursesOf(runs));
   const [pair, choose] = useState(() => firstPair(runs, courses));
@@ -85,6 +88,7 @@ function Where({ runs }: { runs: readonly ReportedRun[] }) {
   );
 }
 
+/** Figures of solver and guard, and the recorded settings. */
 function Engineer({ of: { steps, interventions, gated, duration, settings } }: { of: ReportedRun }) {
   const facts = [
     ['Control step, median', `${fixed(steps?.p50_us ?? NaN, 0)} µs`],
@@ -119,6 +123,7 @@ function Engineer({ of: { steps, interventions, gated, duration, settings } }: {
   );
 }
 
+/** Laps and figures of a run, and the command that shows it again. */
 function Run({ of }: { of: ReportedRun }) {
   return (
     <section class="columns" aria-label={of.name}>

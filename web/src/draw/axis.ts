@@ -1,9 +1,13 @@
+// Ranges and ticks of the axes of plots.
 import { extent, niceCeil } from '../lib/math';
 
+/** Values of the curves of a plot. */
 type Columns = readonly ArrayLike<number>[];
+/** Range of an axis for the columns that are drawn. */
 type AxisRange = (columns: Columns) => [number, number];
 
-const HEADROOM = 1.06; // lines do not touch the frame
+/** Factor from the greatest value to the least end of an axis, so that lines do not touch the frame; chosen. */
+const HEADROOM = 1.06;
 
 /** The greatest distance of a value from 0. */
 const reachOf = (columns: Columns): number =>

@@ -2,18 +2,18 @@ import type { Box } from '../lib/math';
 import { type Camera, transformOf, worldInView } from './camera';
 import { type Theme, theme } from './theme';
 
-/** What the map is painted with, in metres of the world. */
+/** Canvas, camera and colours with which the map is painted, in metres of the world. */
 export interface Brush {
   readonly ctx: CanvasRenderingContext2D;
   readonly camera: Camera;
   readonly ratio: number; // device pixels to a CSS pixel
   readonly colours: Theme;
   readonly px: number; // one CSS pixel [m]
-  readonly view: Box; // holds all that is seen
+  readonly view: Box; // of the world, holds all that is seen
   readonly size: number; // scale of lines and paint; 1 for full-size cars
 }
 
-/** Turns a canvas to the world as a camera sees it. */
+/** Sets the transform of a canvas such that coordinates of the world appear where the camera sees them. */
 export function brushOn(ctx: CanvasRenderingContext2D, camera: Camera, ratio: number, size = 1): Brush {
   ctx.setTransform(...transformOf(camera, ratio));
   ctx.lineJoin = 'round';

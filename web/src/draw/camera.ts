@@ -1,3 +1,4 @@
+// Cameras of the map: from world coordinates to pixels and back, following the car or showing the whole track.
 import { type Box, clamp, type Point } from '../lib/math';
 
 /** World to screen: x right, y up in W; pixels right and down on the screen. CSS pixels. */
@@ -62,6 +63,7 @@ export function fitting(box: Box, width: number, height: number, { top, right, b
   };
 }
 
+/** The same inset at each edge [px]. */
 export const allRound = (margin: number): Insets => ({ top: margin, right: margin, bottom: margin, left: margin });
 
 /**
@@ -88,7 +90,10 @@ export function behind(
   return { centre: car, at, scale, rotation: Math.PI / 2 - heading };
 }
 
-/** Lines of a square grid that cover the view: 40 px apart or more, at multiples of `least`, twice that, … [m]. */
+/**
+ * Lines of a square grid that cover the view: `least` metres apart, or twice, four times … that: 40 px or more
+ * (chosen).
+ */
 export function groundGrid(
   camera: Camera,
   width: number,
@@ -108,5 +113,5 @@ export function groundGrid(
   };
 }
 
-/** One turn of the wheel or press of a key; the view spans 15 m to 2 km. */
+/** Width of the view after one turn of the wheel or press of a key, from 15 m to 2 km (chosen) [m]. */
 export const zoomed = (metresAcross: number, factor: number): number => clamp(metresAcross * factor, 15, 2000);

@@ -1,6 +1,8 @@
+// Shape of a car seen from above: its body and its steered wheels.
 import { paintSize } from '../lib/paint_size';
 import type { Run } from '../protocol/topics';
 
+/** A wheel seen from above. */
 export interface Wheel {
   /** Centre in the car's own axes, x forward, y left, from the centre of mass [m]. */
   readonly x: number;
@@ -8,6 +10,7 @@ export interface Wheel {
   readonly angle: number; // [rad], left positive
 }
 
+/** A car seen from above, in its own axes [m]. */
 export interface CarShape {
   readonly rear: number; // of the body, along x [m]
   readonly front: number;
@@ -18,6 +21,7 @@ export interface CarShape {
   readonly wheels: readonly Wheel[]; // front left, front right, rear left, rear right
 }
 
+/** Dimensions of a car [m]. */
 export type CarSize = Pick<
   Run,
   'front_axle_m' | 'rear_axle_m' | 'track_width_m' | 'tire_width_m' | 'body_length_m' | 'body_width_m'

@@ -6,7 +6,7 @@ import type { Theme } from './theme';
 
 type Context = CanvasRenderingContext2D;
 
-/** Room round the plotted area [px]. */
+/** Room round the plotted area for the labels of the axes [px]. */
 export const ROOM = { left: 44, right: 18, top: 8, bottom: 22 } as const;
 
 /** Where the values of a chart are on its canvas. */
@@ -22,6 +22,7 @@ export interface Chart {
   readonly y: (value: number) => number;
 }
 
+/** The chart of a canvas: ranges of its horizontal and of its vertical axis. */
 export function chartOn(
   context: Context,
   size: { readonly width: number; readonly height: number },
@@ -35,7 +36,7 @@ export function chartOn(
   return { context, left, right, top, bottom, from, to, x, y };
 }
 
-/** Grid and labels; `label` of the horizontal axis. */
+/** Draws grid and labels; `label` gives those of the horizontal axis. */
 export function drawAxes(
   { context, left, right, top, bottom, x, y }: Chart,
   xTicks: readonly number[],
@@ -65,6 +66,7 @@ export function drawAxes(
   for (const tick of yTicks) context.fillText(tidy(tick), left - 7, y(tick));
 }
 
+/** A curve of a chart. */
 export interface ChartCurve {
   readonly values: ArrayLike<number>;
   readonly colour: string;
@@ -73,7 +75,7 @@ export interface ChartCurve {
   readonly fill?: string;
 }
 
-/** A curve inside the plotted area, with a gap where `longest` passes without a value. */
+/** Draws a curve inside the plotted area, with a gap where values are more than `longest` seconds apart. */
 export function drawCurve(
   { context, left, right, top, bottom, x, y }: Chart,
   times: ArrayLike<number>,

@@ -1,3 +1,4 @@
+// Lines as columns of coordinates: lengths, the stretches inside a picture, and the part ahead of a car.
 import type { Box, Point } from '../lib/math';
 import { knownStretches } from './curve';
 
@@ -7,6 +8,7 @@ export interface Line {
   readonly y: ArrayLike<number>;
 }
 
+/** The points of a line as columns. */
 export const lineOf = (points: readonly Point[]): Line => ({
   x: Float64Array.from(points, ({ x }) => x),
   y: Float64Array.from(points, ({ y }) => y),

@@ -9,13 +9,14 @@ import type { RoadShape } from './scene';
 
 const pointOf = (line: Line, i: number): Point => ({ x: line.x[i] ?? NaN, y: line.y[i] ?? NaN });
 
-/** From the edge outward, at right angles to the road, by so many metres. */
+/** The point `metres` outward from point `i` of an edge, at right angles to the road. */
 function beside(edge: Line, centre: Line, i: number, metres: number): Point {
   const [e, c] = [pointOf(edge, i), pointOf(centre, i)];
   const half = Math.hypot(e.x - c.x, e.y - c.y) || 1;
   return { x: e.x + ((e.x - c.x) / half) * metres, y: e.y + ((e.y - c.y) / half) * metres };
 }
 
+/** Index of the road's point at a place along its centre line [m]. */
 const indexAt = ({ lengths }: RoadShape, place: number): number =>
   Math.min(firstSince(lengths, place), lengths.length - 1);
 
@@ -28,10 +29,11 @@ function indicesOf(road: RoadShape, from: number, to: number): number[] {
   return [...all, end];
 }
 
+/** Whether a point is at most `margin` outside a view [m]. */
 const isIn = (view: Box, { x, y }: Point, margin: number): boolean =>
   x > view.minX - margin && x < view.maxX + margin && y > view.minY - margin && y < view.maxY + margin;
 
-const KERB_DASH_M = 2;
+const KERB_DASH_M = 2; // chosen
 
 /** Red and white along both edges of each corner, `width` metres wide; nothing where the track has no kerbs. */
 export function drawKerbs(
@@ -61,7 +63,7 @@ export function drawKerbs(
   }
 }
 
-const CHEQUERS = 8;
+const CHEQUERS = 8; // across the road; chosen
 
 /** Two rows of chequers across the road. */
 export function drawStartLine({ ctx, colours, px, size }: Brush, road: RoadShape, place: number): void {
@@ -85,7 +87,7 @@ export function drawStartLine({ ctx, colours, px, size }: Brush, road: RoadShape
     }
 }
 
-const LABEL_PX = 16; // from the road's edge
+const LABEL_PX = 16; // from the road's edge; chosen
 
 /** "T3" on the outside of each corner, upright whatever way the map is turned. */
 export function drawCornerNumbers(

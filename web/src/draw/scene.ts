@@ -1,3 +1,4 @@
+// The map on a canvas: ground, road and racing line; trace, plan, cars and marks; and the small map.
 import type { Point } from '../lib/math';
 import type { Pose } from '../lib/poses';
 import type { Limit } from '../protocol/topics';
@@ -39,6 +40,7 @@ export interface RoadShape {
   readonly reach: number; // longest step plus largest half width: the margin for clipping to the view [m]
 }
 
+/** Shape of a road; null before its lines are known. */
 export function roadShape(road: RoadLines): RoadShape | null {
   const count = Math.min(road.left.length, road.right.length, road.centre.length);
   if (count < 2) return null;
@@ -58,6 +60,7 @@ export function roadShape(road: RoadLines): RoadShape | null {
   };
 }
 
+/** Strokes a path. */
 function stroke({ ctx }: Brush, path: Path2D, colour: string, width: number): void {
   ctx.strokeStyle = colour;
   ctx.lineWidth = width;
@@ -82,6 +85,7 @@ function drawGround({ ctx, camera, colours, ratio, px, size }: Brush): void {
   for (let y = from.y; y <= to.y; y += spacing) draw(from.x, y, to.x, y);
 }
 
+/** Draws the part of the road that is in view: surface, edges, dashed centre line. */
 function drawRoad(brush: Brush, { left, right, centre, lengths, reach }: RoadShape): void {
   const { ctx, view, colours, px, size } = brush;
   const stretches = stretchesInside(centre, view, reach);
@@ -106,7 +110,8 @@ function drawRoad(brush: Brush, { left, right, centre, lengths, reach }: RoadSha
   ctx.setLineDash([]);
 }
 
-const JUMP_M = 20; // the car was placed elsewhere: no line across the jump
+/** Step of the trace beyond which the car was placed elsewhere: no line is drawn across it [m]; chosen. */
+const JUMP_M = 20;
 
 /** The part of a line that is in view; longer steps than `reach` are jumps [m]. */
 function drawInView(brush: Brush, points: Line, reach: number, colour: string, width: number): void {
@@ -115,15 +120,17 @@ function drawInView(brush: Brush, points: Line, reach: number, colour: string, w
   stroke(brush, path, colour, width);
 }
 
+/** Draws a whole line. */
 function drawLine(brush: Brush, line: Line, colour: string, width: number): void {
   const path = new Path2D();
   addLine(path, line, 0, line.x.length);
   stroke(brush, path, colour, width);
 }
 
+/** Longest step of each racing line [m]: found once, because lines are long. */
 const reaches = new WeakMap<Limit, number>();
 
-/** Thin and solid: dashes would double the cost. */
+/** Draws the racing line, thin and solid: dashes would double the cost. */
 function drawRacingLine(brush: Brush, limit: Limit): void {
   const points = { x: limit.x_m, y: limit.y_m };
   const reach = reaches.get(limit) ?? longestStep(points);
@@ -131,7 +138,7 @@ function drawRacingLine(brush: Brush, limit: Limit): void {
   drawInView(brush, points, reach, brush.colours.b, Math.max(0.2 * brush.size, 1.5 * brush.px));
 }
 
-/** A past plan as a broad band, with the path driven since on top. */
+/** Draws a past plan as a broad band, with the path driven since on top. */
 function drawHindsight(brush: Brush, { plan, drivenX, drivenY }: Hindsight): void {
   const { ctx, colours, px, size } = brush;
   ctx.globalAlpha = 0.6;
@@ -140,6 +147,7 @@ function drawHindsight(brush: Brush, { plan, drivenX, drivenY }: Hindsight): voi
   drawLine(brush, { x: drivenX, y: drivenY }, colours.a, Math.max(0.18 * size, 2 * px));
 }
 
+/** Draws the wheels, in the axes of the car. */
 function drawWheels({ ctx, colours }: Brush, shape: CarShape): void {
   ctx.fillStyle = colours.wheel;
   for (const wheel of shape.wheels) {
@@ -151,13 +159,14 @@ function drawWheels({ ctx, colours }: Brush, shape: CarShape): void {
   }
 }
 
-/** Radii of a body seen from above: tail, nose, nose, tail. */
-const NOSE_M = [0.5, 0.9, 0.9, 0.5];
-const NARROW = 0.84; // than the wheels, so that they are seen to steer
+/** Radii of the corners of a body seen from above: tail, nose, nose, tail [m]; chosen. */
+const CORNER_RADII_M = [0.5, 0.9, 0.9, 0.5];
+/** Width of the drawn body to that of the car: narrower, so that the wheels are seen to steer; chosen. */
+const NARROW = 0.84;
 
 type Car = NonNullable<Scene['car']>;
 
-/** From far away a car is drawn enlarged, at least 18 px long. */
+/** Factor by which a car is enlarged from far away, so that it is at least 18 px long. */
 const grownBy = ({ front, rear }: CarShape, px: number): number => Math.max(1, (18 * px) / (front - rear));
 
 /** The outline of a car's body at a pose, as the path that is drawn next; in the axes of the body until restored. */
@@ -174,10 +183,11 @@ function outline({ ctx, px }: Brush, { x, y, yaw }: Point & { yaw: number }, { s
     -narrow,
     front - rear,
     2 * narrow,
-    NOSE_M.map((radius) => radius * size),
+    CORNER_RADII_M.map((radius) => radius * size),
   );
 }
 
+/** Draws the car with its wheels and brake lamps; from far away with a ring round it. */
 function drawCar(brush: Brush, car: Car): void {
   const { ctx, colours, px } = brush;
   const { shape } = car;
@@ -214,7 +224,7 @@ function drawCar(brush: Brush, car: Car): void {
   ctx.restore();
 }
 
-/** A triangle where a fault began. */
+/** Draws a triangle where a fault began. */
 function drawFault({ ctx, colours, px, size: unit }: Brush, { x, y }: Point): void {
   const size = Math.max(0.9 * unit, 7 * px);
   ctx.beginPath();
@@ -229,7 +239,7 @@ function drawFault({ ctx, colours, px, size: unit }: Brush, { x, y }: Point): vo
   ctx.stroke();
 }
 
-/** The pose that the plan of a second ago predicts for now. */
+/** Draws the outline of the car at the pose that a past plan predicted for now. */
 function drawPredicted(brush: Brush, pose: Pose, car: Car): void {
   outline(brush, pose, car);
   brush.ctx.restore();
@@ -238,7 +248,7 @@ function drawPredicted(brush: Brush, pose: Pose, car: Car): void {
   brush.ctx.stroke();
 }
 
-/** The ghost car; not drawn where it would overlap the car itself. */
+/** Draws the ghost car, except where it would overlap the car itself. */
 function drawGhost(brush: Brush, ghost: Pose, car: Car): void {
   const { ctx, colours, px } = brush;
   const { size } = car.shape;
@@ -250,7 +260,7 @@ function drawGhost(brush: Brush, ghost: Pose, car: Car): void {
   ctx.restore();
 }
 
-/** The static part of the scene: ground, road, racing line. Covers the whole canvas. */
+/** Draws the static part of the scene on the whole canvas: ground, road, racing line. */
 export function drawWorld(
   ctx: CanvasRenderingContext2D,
   scene: Pick<Scene, 'road' | 'racingLine' | 'corners' | 'kerb' | 'isWhole' | 'start' | 'losses' | 'size'>,
@@ -272,7 +282,7 @@ export function drawWorld(
   if (scene.road) drawCornerNumbers(brush, scene.road, scene.corners);
 }
 
-/** The moving part of the scene, on top of drawWorld(). */
+/** Draws the moving part of the scene, on top of drawWorld(). */
 export function drawMoving(ctx: CanvasRenderingContext2D, scene: Scene, camera: Camera, ratio: number): void {
   const brush = brushOn(ctx, camera, ratio, scene.size);
   const { colours, px, size } = brush;
@@ -286,7 +296,7 @@ export function drawMoving(ctx: CanvasRenderingContext2D, scene: Scene, camera: 
   if (scene.hindsight?.predicted && scene.car) drawPredicted(brush, scene.hindsight.predicted, scene.car);
 }
 
-/** Where the cursor of the plots stands. */
+/** Draws a ring where the cursor of the plots stands. */
 export function drawCursor(ctx: CanvasRenderingContext2D, at: Point, camera: Camera, ratio: number): void {
   const { colours, px } = brushOn(ctx, camera, ratio);
   for (const [colour, width] of [
@@ -301,7 +311,7 @@ export function drawCursor(ctx: CanvasRenderingContext2D, at: Point, camera: Cam
   }
 }
 
-/** The whole track, small, with the line of a lap by what it loses. */
+/** Draws the small map: the whole track, and the line of a lap in the colours of the time lost. */
 export function drawOutline(
   ctx: CanvasRenderingContext2D,
   { centre }: RoadShape,
@@ -317,7 +327,7 @@ export function drawOutline(
   if (losses) drawLosses({ ...brush, colours: onPaper }, losses, 4 * px);
 }
 
-/** The car on it. */
+/** Draws the car on the small map, as a dot. */
 export function drawDot(ctx: CanvasRenderingContext2D, car: Point, camera: Camera, ratio: number): void {
   const { colours, px } = brushOn(ctx, camera, ratio);
   ctx.beginPath();

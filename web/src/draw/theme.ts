@@ -1,3 +1,4 @@
+// Colours of canvases, read from styles/tokens.css for the light and the dark scheme.
 import { effect, untracked } from '@preact/signals';
 import { scheme } from '../lib/appearance';
 import { store } from '../lib/store';
@@ -28,20 +29,21 @@ const COLOURS = {
   wonInText: 'won',
 } as const;
 
+/** Colours and fonts as canvases can use them. */
 export interface Theme extends Readonly<Record<keyof typeof COLOURS, string>> {
   readonly series: readonly string[]; // of curves
   readonly font: string;
 }
 
-/** Tokens of curves, by number. */
+/** Tokens of the colours of curves, by number. */
 const SERIES = ['ink', 'other', 'plan', 'lost', 'won', 'quiet', 'act', 'edge', 'quiet', 'rule'] as const;
-/** Of a curve, as a style has it. */
+/** Colour of a curve by its number, as a value of CSS. */
 export const toneOf = (series: number): string => `var(--${SERIES[series] ?? 'quiet'})`;
 
-/** A token as a canvas can use it: light or dark as `scheme` says, and colours are mixed. */
+/** Computed colour of a token in the scheme that is shown: canvases know no light-dark() and no color-mix(). */
 function tokenColour(name: string): string {
   const probe = document.createElement('i');
-  probe.style.colorScheme = scheme.peek(); // the page may follow after this
+  probe.style.colorScheme = scheme.peek(); // the page's own may change only after this
   probe.style.color = `var(--${name})`;
   document.documentElement.append(probe);
   const { color } = getComputedStyle(probe);
@@ -49,6 +51,7 @@ function tokenColour(name: string): string {
   return color;
 }
 
+/** Reads all tokens. */
 const read = (): Theme => ({
   ...(Object.fromEntries(Object.entries(COLOURS).map(([name, token]) => [name, tokenColour(token)])) as Record<
     keyof typeof COLOURS,
@@ -58,6 +61,7 @@ const read = (): Theme => ({
   font: getComputedStyle(document.body).fontFamily,
 });
 
+/** Themes that were read, by scheme. */
 const known = store.data('page', () => ({ light: null as Theme | null, dark: null as Theme | null }));
 const listeners = new Set<() => void>();
 

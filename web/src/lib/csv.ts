@@ -7,6 +7,7 @@ export function csv(header: readonly string[], rows: Iterable<readonly (string |
   return `${lines.join('\n')}\n`;
 }
 
+/** A value as text, quoted where it has to be. */
 function cell(value: string | number | boolean): string {
   if (typeof value === 'number') return Number.isFinite(value) ? String(Number(value.toPrecision(9))) : '';
   const text = String(value);

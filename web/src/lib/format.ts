@@ -1,3 +1,5 @@
+// Texts of numbers, lap times, durations and counts.
+
 /** Shown in place of an unknown number. */
 export const UNKNOWN = '–';
 

@@ -1,3 +1,5 @@
+// Keyboard shortcuts: their registration, and which of them a key press belongs to.
+
 /** The groups of the help, in their order. */
 export const GROUPS = ['Run', 'Camera', 'Page', 'Driving by hand'] as const;
 type Group = (typeof GROUPS)[number];
@@ -8,6 +10,7 @@ export interface Shortcut {
   readonly keys: readonly string[];
   /** The key as the help shows it. */
   readonly label: string;
+  /** Its effect, as the help shows it. */
   readonly does: string;
   readonly group: Group;
   action(): void;
@@ -26,6 +29,7 @@ export function addShortcuts(group: Group, ...more: readonly Omit<Shortcut, 'gro
   };
 }
 
+/** All shortcuts that are registered. */
 export const allShortcuts = (): readonly Shortcut[] => shortcuts;
 
 /** The properties of a focused element that decide whether it handles a key. */
@@ -35,8 +39,10 @@ export interface KeyTarget {
   readonly isContentEditable?: boolean;
 }
 
+/** Keys that move a focused slider. */
 const ON_SLIDER = new Set(['arrowleft', 'arrowright', 'arrowup', 'arrowdown', 'home', 'end', 'pageup', 'pagedown']);
 
+/** Types of inputs that are ticked. */
 const TICKED = new Set(['checkbox', 'radio']);
 
 /**
@@ -53,7 +59,7 @@ export function isTakenBy(target: KeyTarget | null, key: string): boolean {
   return (tag === 'button' || tag === 'a' || tag === 'summary') && key === 'enter';
 }
 
-/** Enter ticks a box, because Space pauses. */
+/** Whether a key press ticks the focused box: Enter does, because Space pauses the run. */
 export const ticks = (target: KeyTarget | null, key: string): boolean =>
   key.toLowerCase() === 'enter' && target?.tagName?.toLowerCase() === 'input' && TICKED.has(target.type ?? '');
 

@@ -1,8 +1,12 @@
+// Points and boxes, angles, interpolation, and search in ascending numbers.
+
+/** A point in a plane. */
 export interface Point {
   readonly x: number;
   readonly y: number;
 }
 
+/** A rectangle along the axes. */
 export interface Box {
   readonly minX: number;
   readonly minY: number;
@@ -10,13 +14,16 @@ export interface Box {
   readonly maxY: number;
 }
 
+/** The value, or the bound that it exceeds. */
 export const clamp = (value: number, low: number, high: number): number => Math.min(high, Math.max(low, value));
 
 /** The remainder in [0, of). */
 export const mod = (value: number, of: number): number => value - of * Math.floor(value / of);
 
+/** The value at a share of the way from a to b. */
 export const mix = (a: number, b: number, share: number): number => a + (b - a) * share;
 
+/** An angle in degrees. */
 export const degrees = (radians: number): number => (radians * 180) / Math.PI;
 
 /** The angle wrapped to (−π, π]. */

@@ -1,6 +1,6 @@
-/** Length of a car that marks and lines are drawn for in their own width [m]. */
+/** Length of the car for which the widths of marks and lines are meant [m]. */
 const FULL_LENGTH_M = 4.5;
-/** Shorter cars are model cars, on roads of their size [m]. */
+/** Length below which a car is a model car, on a road of its size [m]; chosen. */
 const SMALL_M = 2;
 
 /** Scale of lines, marks and paint on the road: 1 for full-size cars, less for model cars. */

@@ -2,9 +2,11 @@ import { capital, lastPart, nameInWords } from './words';
 
 // What the program refuses, as a sentence. It says `key: got X, expected Y`, for files and terminals.
 
+/** "key: got X, expected Y", also with the prefix of questions. */
 const REFUSAL = /^(?:what if: )?([a-z][\w.-]*): got (.+?), expected (.+)$/s;
 const NUMBER = /^a(?:n integer| number) in \[([^,\]]+), ([^\]]+)\](?: (.+))?$/;
 
+/** The text without its quotation marks. */
 const unquoted = (text: string): string => text.replace(/^"(.*)"$/s, '$1');
 
 /** The last part of a key, without its unit: "speed limit" of `tracking_mpc.speed_limit_mps`. */

@@ -47,13 +47,7 @@ describe('scales', () => {
 
 describe('numbers for people', () => {
   it('are short', () => {
-    expect([0.1 + 0.2, 1e6, -4, 123456.789, Infinity, NaN].map(tidy)).toEqual([
-      '0.3',
-      '1000000',
-      '−4',
-      '123457',
-      '∞',
-      '–',
-    ]);
+    const numbers = [0.1 + 0.2, 1e6, -4, 123456.789, Infinity, NaN];
+    expect(numbers.map(tidy).join(' ')).toBe('0.3 1000000 −4 123457 ∞ –');
   });
 });

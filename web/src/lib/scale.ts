@@ -3,6 +3,7 @@ import { clamp } from './math';
 /** How the travel of a slider maps to the values of its range. */
 export type Scale = 'linear' | 'cubic' | 'logarithmic';
 
+/** Range of a slider. */
 export interface Range {
   readonly minimum: number;
   readonly maximum: number;
@@ -10,12 +11,13 @@ export interface Range {
   readonly isInteger: boolean;
 }
 
-/** Length of a logarithmic scale whose range begins at 0: decades below its end. */
+/** Length of a logarithmic scale whose range begins at 0, in decades below its end; chosen. */
 const DECADES = 7;
 
 /**
- * The scale on which a value is easy to find: logarithmic over more than three decades, or up from 0 to a thousand and
- * more; cubic where what is usual lies within the first 5 % of the range; else linear.
+ * The scale on which the usual value is easy to find; the bounds are chosen. Logarithmic where the range spans a factor
+ * of 300 and the usual value lies in its first fifth, or where it leads from 0 to a thousand and more; cubic where the
+ * usual value lies in its first twentieth; else linear.
  */
 export function scaleOf(minimum: number, maximum: number, usual: number): Scale {
   if (minimum > 0 ? maximum / minimum > 300 && usual < 0.2 * maximum : minimum === 0 && maximum >= 1000)
@@ -38,14 +40,9 @@ export function shareOf(value: number, { minimum, maximum, scale }: Range): numb
 export function valueAt(share: number, { minimum, maximum, scale, isInteger }: Range): number {
   if (share <= 0) return minimum;
   if (share >= 1) return maximum;
-  const raw =
-    scale === 'linear'
-      ? minimum + share * (maximum - minimum)
-      : scale === 'cubic'
-        ? minimum + share ** 3 * (maximum - minimum)
-        : minimum > 0
-          ? minimum * (maximum / minimum) ** share
-          : maximum * 10 ** ((share - 1) * DECADES);
+  let raw = minimum + (scale === 'cubic' ? share ** 3 : share) * (maximum - minimum);
+  if (scale === 'logarithmic')
+    raw = minimum > 0 ? minimum * (maximum / minimum) ** share : maximum * 10 ** ((share - 1) * DECADES);
   return clamp(isInteger ? Math.round(raw) : Number(raw.toPrecision(3)), minimum, maximum);
 }
 

@@ -1,7 +1,7 @@
 import { signal as makeSignal, type Signal } from '@preact/signals';
 
-// All state of the page that outlives a view. Each file declares its part here, and says for how long it holds; one
-// reset() puts back what has ended. layers.test.ts refuses state beside it.
+// The store: all state of the page that outlives a view. Each file declares its part here, and for how long it holds;
+// one reset() puts back what has ended. layers.test.ts refuses state outside of the store.
 
 /**
  * 'moment': gathered up to this moment of the run; ends when the run begins again, or a recording jumps.
@@ -10,6 +10,7 @@ import { signal as makeSignal, type Signal } from '@preact/signals';
  */
 export type Lasts = 'moment' | 'run' | 'page';
 
+/** State that was declared, and how it is reset. */
 interface Part {
   readonly lasts: Lasts;
   reset(): void;
@@ -19,7 +20,7 @@ interface Part {
 const parts: Part[] = [];
 
 export const store = {
-  /** A signal, and what it is at first. */
+  /** A signal with its initial value. */
   signal<T>(lasts: Lasts, first: T): Signal<T> {
     const made = makeSignal<T>(first);
     const reset = (): void => {
@@ -29,23 +30,23 @@ export const store = {
     return made;
   },
 
-  /** Plain fields, and what they are at first. */
+  /** An object of plain fields with their initial values; `first` is called at each reset. */
   data<T extends object>(lasts: Lasts, first: () => T): T {
     const made = first();
     parts.push({ lasts, reset: () => void Object.assign(made, first()), peek: () => ({ ...made }) });
     return made;
   },
 
-  /** Further work at that moment, in memory that is kept. */
+  /** Calls `reset` when state that lasts so long ends; for memory that is used again. */
   onReset(lasts: Lasts, reset: () => void): void {
     parts.push({ lasts, reset, peek: () => null });
   },
 
-  /** Another moment of the run follows, or another run. */
+  /** Resets all state that ends with this moment, or with this run. */
   reset(what: 'moment' | 'run'): void {
     for (const part of parts) if (part.lasts === 'moment' || part.lasts === what) part.reset();
   },
 
-  /** What the parts hold that end with a run. For tests. */
+  /** Values of all state that ends with a run; for tests. */
   peek: (): unknown[] => parts.filter(({ lasts }) => lasts !== 'page').map((part) => part.peek()),
 };

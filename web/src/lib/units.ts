@@ -1,3 +1,4 @@
+// Unit of all speeds on the page, chosen by the user.
 import { persisted } from './persisted';
 
 /** A unit for speeds; every speed on the page is shown in one of these. */
@@ -12,6 +13,7 @@ export interface SpeedUnit {
 /** mph in one m/s: 3600 s/h over 1609.344 m/mile. */
 export const MPH = 3600 / 1609.344;
 
+/** The units, in the order of the key that changes them. */
 export const SPEED_UNITS: readonly SpeedUnit[] = [
   { name: 'mph', spoken: 'miles per hour', perMps: MPH, axisStep: 10, axisLeast: 40 },
   { name: 'km/h', spoken: 'kilometres per hour', perMps: 3.6, axisStep: 20, axisLeast: 60 },
@@ -29,6 +31,7 @@ export const speedUnit = (): SpeedUnit =>
 /** A speed [m/s] as a number in the reader's unit. */
 export const inSpeedUnit = (mps: number): number => mps * speedUnit().perMps;
 
+/** Chooses the next unit. */
 export function nextSpeedUnit(): void {
   const at = SPEED_UNITS.findIndex(({ name }) => name === chosen.value);
   chosen.value = SPEED_UNITS[(at + 1) % SPEED_UNITS.length]?.name ?? 'mph';

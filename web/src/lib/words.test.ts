@@ -34,15 +34,8 @@ describe('words', () => {
   });
 
   it('calls usable solutions good, and no others', () => {
-    expect([0, 1, 2, -1, -2, -3, 7].map((status) => statusInWords(status).severity)).toEqual([
-      'good',
-      'good',
-      'good',
-      'bad',
-      'bad',
-      'bad',
-      'bad',
-    ]);
+    const severities = [0, 1, 2, -1, -2, -3, 7].map((status) => statusInWords(status).severity);
+    expect(severities.join(' ')).toBe('good good good bad bad bad bad');
   });
 
   it('describes the gate', () => {

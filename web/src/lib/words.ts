@@ -1,20 +1,24 @@
+// Words for what messages report of guard, solver, gate, road and constraints; and small functions on texts.
 import { REASON, REASON_WORDS, RUNG, RUNG_WORDS, type SPEED_LIMITER, STATUS_WORDS } from '../protocol/messages';
 import type { Frame } from '../protocol/topics';
 
+/** How bad a state is. */
 export type Severity = 'good' | 'warning' | 'bad' | 'unknown';
 
+/** A text about a state, with its severity. */
 export interface Sentence {
   readonly severity: Severity;
   readonly text: string;
 }
 
+/** The text with a capital. */
 export const capital = (text: string): string => text.charAt(0).toUpperCase() + text.slice(1);
 
-/** With a capital and a full stop; nothing stays nothing. */
+/** A text with a capital and a full stop; an empty text stays empty. */
 export const sentenceOf = (text: string): string =>
   text === '' ? '' : `${capital(text)}${text.endsWith('.') ? '' : '.'}`;
 
-/** The sentence of what was thrown. */
+/** Message of a value that was thrown. */
 export const reasonOf = (error: unknown): string => (error instanceof Error ? error.message : String(error));
 
 /** What the guard found, by Frame.guard_reason. */
@@ -82,7 +86,7 @@ const LIMITER_NAMES: Readonly<Record<keyof typeof SPEED_LIMITER, string>> = {
   PLAN: 'planned lap',
 };
 
-/** By Frame.speed_limiter. */
+/** What limits the speed, by Frame.speed_limiter. */
 export const LIMITERS: readonly string[] = Object.values(LIMITER_NAMES);
 
 /** The last part of a key: "latency" of `a.b.latency`. */

@@ -5,16 +5,16 @@ import { type Port, WorkerLink } from './worker_link';
 function fakeWorker() {
   const sent: unknown[] = [];
   const port: Port = { onmessage: null, postMessage: (message) => sent.push(message) };
-  return { sent, port, say: (data: unknown) => port.onmessage?.({ data } as never) };
-}
-const settle = () => new Promise((resolve) => setTimeout(resolve, 0));
-
-test('a connection opens, carries messages both ways, and says what it has taken', async () => {
-  const { sent, port, say } = fakeWorker();
   const link = new WorkerLink(
     () => undefined,
     async () => port,
   );
+  return { sent, port, link, say: (data: unknown) => port.onmessage?.({ data } as never) };
+}
+const settle = () => new Promise((resolve) => setTimeout(resolve, 0));
+
+test('a connection opens, carries messages both ways, and says what it has taken', async () => {
+  const { sent, link, say } = fakeWorker();
   const socket = link.open();
   const got: unknown[] = [];
   socket.onmessage = ({ data }) => got.push(data);
@@ -33,11 +33,7 @@ test('a connection opens, carries messages both ways, and says what it has taken
 });
 
 test('messages go to the connection that was opened last', async () => {
-  const { sent, port, say } = fakeWorker();
-  const link = new WorkerLink(
-    () => undefined,
-    async () => port,
-  );
+  const { sent, link, say } = fakeWorker();
   const got: string[] = [];
   link.open().onmessage = () => got.push('first');
   link.open().onmessage = () => got.push('second');
@@ -48,11 +44,7 @@ test('messages go to the connection that was opened last', async () => {
 });
 
 test('each question gets its own answer', async () => {
-  const { port, say } = fakeWorker();
-  const link = new WorkerLink(
-    () => undefined,
-    async () => port,
-  );
+  const { link, say } = fakeWorker();
   const answers = [link.get('/schema.json'), link.get('/none.json')];
   await settle();
   say({ kind: 'content', id: 2, text: null });

@@ -9,13 +9,13 @@ type FromWorker =
   | { readonly kind: 'content'; readonly id: number; readonly text: string | null }
   | { readonly kind: 'problem'; readonly text: string };
 
-/** A worker as this file uses it. */
+/** The part of a worker that this file uses. */
 export interface Port {
   onmessage: ((event: { data: FromWorker }) => void) | null;
   postMessage(message: unknown): void;
 }
 
-/** The worker's script, compressed, from the page itself. */
+/** Starts the worker; its script lies compressed in the page itself. */
 async function startWorker(): Promise<Port> {
   const held = document.getElementById('chicane-worker')?.textContent ?? '';
   const bytes = Uint8Array.from(atob(held.trim()), (letter) => letter.charCodeAt(0));
@@ -24,6 +24,7 @@ async function startWorker(): Promise<Port> {
   return new Worker(URL.createObjectURL(script)) as unknown as Port;
 }
 
+/** A socket whose messages go through the worker's port. */
 class WorkerSocket implements Socket {
   binaryType = 'arraybuffer';
   onclose: Socket['onclose'] = null;

@@ -8,6 +8,7 @@ export function Button({ act, ...more }: { act: () => unknown } & Omit<Component
   return <button type="button" onClick={() => void act()} {...more} />;
 }
 
+/** An entry of a list. */
 interface Choice<T> {
   readonly value: T;
   readonly label: string;
@@ -15,6 +16,7 @@ interface Choice<T> {
   readonly disabled?: boolean;
 }
 
+/** Properties of a list. */
 interface SelectOptions<T> {
   readonly label: string; // for screen readers
   readonly value: T;
@@ -26,7 +28,7 @@ interface SelectOptions<T> {
   readonly disabled?: boolean;
 }
 
-/** One of several, in the browser's own list. */
+/** Choice of one of several, in the browser's own list. */
 export function Select<T extends string | number>({ label, value, choices, choose, keys, ...more }: SelectOptions<T>) {
   const take = (index: number): void => {
     const chosen = choices[index];
@@ -72,7 +74,7 @@ export const Heads = ({ of, quiet = false }: { of: readonly string[]; quiet?: bo
 
 const SIGNS = { good: ['won', '●'], warning: ['lost', '■'], bad: ['lost', '▲'], unknown: ['soft', '●'] } as const;
 
-/** How bad it is, before its words. */
+/** Sign of a severity, which stands before its words. */
 export const Sign = ({ of }: { of: Severity }) => (
   <span class={`sign ${SIGNS[of][0]}`} data-sign={SIGNS[of][1]} aria-hidden="true" />
 );

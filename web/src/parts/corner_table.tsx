@@ -1,3 +1,4 @@
+// Table of the corners of a comparison: time lost in each, and why.
 import { byCost, type Comparison, signed, toneOf, whyOf } from '../state/comparison';
 import { Heads } from './controls';
 

@@ -1,3 +1,4 @@
+// Heading of a comparison: a sentence in which A and B can be chosen.
 import { lapTime } from '../lib/format';
 import { capital } from '../lib/words';
 import { type Comparison, type Course, headlineOf } from '../state/comparison';

@@ -1,3 +1,4 @@
+// Plots along the lap of a comparison: gap, speed, pedal, steering and, for engineers, solver and controller.
 import { useLayoutEffect, useMemo, useRef, useState } from 'preact/hooks';
 import { aboutZero, fromZero, rangeInSteps, ticksOf } from '../draw/axis';
 import { curvePath } from '../draw/curve';
@@ -21,12 +22,14 @@ interface Row {
   readonly write: (value: number) => string;
 }
 
+/** A row that shows a channel of laps; `range` gives its axis. */
 interface ChannelRow extends Pick<Row, 'title' | 'unit' | 'write'> {
   readonly channel: LapChannel;
   readonly factor: number;
   readonly range: (columns: readonly Float64Array[]) => readonly [number, number];
 }
 
+/** Writes values with a unit. */
 const inUnit =
   (unit: string, decimals = 0) =>
   (value: number): string =>
@@ -37,6 +40,7 @@ const micros = (value: number): string => {
   return `${number} ${unit}`;
 };
 
+/** The row of the speed in the user's unit. */
 const speedRow = ({ name: unit, perMps: factor, axisStep, axisLeast }: SpeedUnit): ChannelRow => {
   const range: ChannelRow['range'] = (columns) => rangeInSteps(columns, 2 * axisStep, axisLeast);
   return { title: 'Speed', unit, channel: 'speed_mps', factor, range, write: inUnit('') };
@@ -46,6 +50,7 @@ const fullPedal = (): [number, number] => [-100, 100];
 const angle = { unit: '°, + left', write: inUnit('°', 1) };
 const offset = { unit: 'm from the centre, + left', write: inUnit(' m', 2) };
 const errorAhead = { unit: 'cm, a delay and a step ahead', write: inUnit(' cm', 1) };
+const delay = { unit: 'ms, compensated', write: inUnit(' ms') };
 const DRIVER_ROWS: readonly ChannelRow[] = [
   { title: 'Pedal', unit: '%, − brakes', channel: 'throttle', factor: 100, range: fullPedal, write: percent },
   { title: 'Steer', channel: 'steer_rad', factor: degrees(1), range: aboutZero(5, 1), ...angle },
@@ -59,22 +64,17 @@ const ENGINEER_ROWS: readonly ChannelRow[] = [
   { title: 'Solver', unit: 'iterations', channel: 'iterations', factor: 1, range: fromZero(8, 1), write: inUnit('') },
   { title: 'Cost', unit: 'of the plan', channel: 'cost', factor: 1, range: fromZero(1, 1), write: tidy },
   { title: 'Model error', channel: 'prediction_error_m', factor: 100, range: fromZero(10, 1), ...errorAhead },
-  {
-    title: 'Delay',
-    unit: 'ms, compensated',
-    channel: 'delay_s',
-    factor: 1000,
-    range: fromZero(100, 1),
-    write: inUnit(' ms'),
-  },
+  { title: 'Delay', channel: 'delay_s', factor: 1000, range: fromZero(100, 1), ...delay },
 ];
 
-/** Shares of the height. */
+/** Shares of the rows in the height; chosen. */
 const HEIGHTS = { gap: 2.4, speed: 3.4, driver: 1.7, engineer: 1.5 } as const;
 
+/** Whether a channel has any value. */
 const isKnown = (values: Float64Array | null): values is Float64Array => values?.some(Number.isFinite) === true;
 const GAP_STEPS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50];
 
+/** The row of the gap, with a round range about zero. */
 function gapRow({ gap, b }: Comparison): Row {
   const [low, high] = extent(gap) ?? [0, 0];
   const span = Math.max(0.2, Math.max(0, high) - Math.min(0, low));
@@ -96,7 +96,7 @@ function gapRow({ gap, b }: Comparison): Row {
 }
 
 /** The rows that A has; `isEngineer`: also rows of solver and controller. */
-export function rowsOf(comparison: Comparison, unit: SpeedUnit, isEngineer: boolean): Row[] {
+function rowsOf(comparison: Comparison, unit: SpeedUnit, isEngineer: boolean): Row[] {
   const scaled = (values: Float64Array | null, factor: number): Float64Array | null =>
     isKnown(values) ? values.map((value) => value * factor) : null;
   const rows = (height: number, specs: readonly ChannelRow[]): Row[] =>
@@ -113,9 +113,11 @@ export function rowsOf(comparison: Comparison, unit: SpeedUnit, isEngineer: bool
   ];
 }
 
-const [TOP, BOTTOM, HEAD, BETWEEN] = [24, 24, 22, 10]; // [px]
-const NARROW_PX = 520;
+/** Room above and below all rows, and for the head of a row and the gap below it [px]; chosen. */
+const [TOP, BOTTOM, HEAD, BETWEEN] = [24, 24, 22, 10];
+const NARROW_PX = 520; // width below which margins are small; chosen
 
+/** Where the rows are in the picture [px]. */
 interface Frame {
   readonly height: number;
   readonly left: number;
@@ -123,6 +125,7 @@ interface Frame {
   readonly perRow: readonly { readonly head: number; readonly top: number; readonly bottom: number }[];
 }
 
+/** Places of the rows in a picture of this size; a cursor needs room for its values. */
 function frameOf(rows: readonly Row[], width: number, height: number, hasCursor: boolean): Frame {
   const isNarrow = width < NARROW_PX;
   const margin = hasCursor ? (isNarrow ? 68 : 104) : 8;
@@ -144,10 +147,11 @@ function yOf({ range: [low, high] }: Row, { top, bottom }: { top: number; bottom
   return bottom - ((Math.min(high, Math.max(low, value)) - low) / (high - low || 1)) * (bottom - top);
 }
 
+/** Path of a curve. */
 const pathOf = (values: Float64Array, x: (i: number) => number, y: (value: number) => number): string =>
   curvePath(values.length, x, (i) => y(values[i] ?? NaN));
 
-/** The gap: the colour of lost above zero, of won below it. */
+/** Curve of the gap, in the colour of lost above zero, of won below it. */
 function GapCurve({ row, x, y }: { row: Row; x: (i: number) => number; y: (value: number) => number }) {
   return (
     <>
@@ -170,7 +174,7 @@ function GapCurve({ row, x, y }: { row: Row; x: (i: number) => number; y: (value
   );
 }
 
-/** All that does not move with the cursor. */
+/** Corners, axes and curves: all that does not move with the cursor. */
 function Curves({ comparison, rows, frame }: { comparison: Comparison; rows: readonly Row[]; frame: Frame }) {
   const { corners, length, s } = comparison;
   const { left, right, height, perRow } = frame;
@@ -259,7 +263,7 @@ interface CursorOptions {
   readonly at: number;
 }
 
-const STEP_M = { fine: 2, coarse: 25 } as const;
+const STEP_M = { fine: 2, coarse: 25 } as const; // of the arrow keys; chosen
 
 interface Options {
   readonly comparison: Comparison;

@@ -1,3 +1,4 @@
+// Table of all laps and of the fastest possible one.
 import { fixed, lapTime, UNKNOWN } from '../lib/format';
 import { inSpeedUnit, speedUnit } from '../lib/units';
 import type { Setting } from '../protocol/source';

@@ -1,14 +1,13 @@
+// Map of a lap in the colours of the time lost to another one.
 import { boundsOf, type Point } from '../lib/math';
 import { type Comparison, pointAt, scaleOf, stretches } from '../state/comparison';
 
-const PIECE_M = 12;
+const PIECE_M = 12; // length of a piece with one colour; chosen
 const SIZE = 1000; // of the picture's longer side, in its own units
 
-/** From grey, as fast, to the colour of lost or won. */
-function colourOf(lost: number, most: number): string {
-  const share = Number.isFinite(lost) ? Math.min(1, Math.abs(lost) / most) : 0;
-  return `color-mix(in srgb, var(${lost > 0 ? '--lost' : '--won'}) ${Math.round(100 * share)}%, var(--edge))`;
-}
+/** Colour from grey, where A is as fast, to that of lost or won. */
+const colourOf = (lost: number, share: number): string =>
+  `color-mix(in srgb, var(${lost > 0 ? '--lost' : '--won'}) ${Math.round(100 * share)}%, var(--edge))`;
 
 /** The way of A in the colours of the time lost to B, with the numbers of corners; `at`: a place that is marked [m]. */
 export function LossMap({ comparison, at }: { comparison: Comparison; at?: number }) {
@@ -56,7 +55,7 @@ export function LossMap({ comparison, at }: { comparison: Comparison; at?: numbe
           <polyline
             key={from}
             points={known.map(([x, y]) => `${x.toFixed(1)},${y.toFixed(1)}`).join(' ')}
-            style={{ stroke: colourOf(lost, most), strokeWidth: 12 + 9 * share }}
+            style={{ stroke: colourOf(lost, share), strokeWidth: 12 + 9 * share }}
           />
         );
       })}

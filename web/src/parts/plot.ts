@@ -1,3 +1,4 @@
+// Charts and maps of results: their format, their axes, and the paths of their series in pixels.
 import { ticksOf } from '../draw/axis';
 import { curvePath } from '../draw/curve';
 import { extent } from '../lib/math';
@@ -13,7 +14,7 @@ export const TONES = {
   paper: 'paper',
 } as const;
 
-/** 'map': both axes to the same scale. */
+/** A chart, or a map, whose axes have the same scale. */
 export interface Plot {
   readonly part: 'chart' | 'map';
   readonly title: string;
@@ -21,6 +22,7 @@ export interface Plot {
   readonly series: readonly Series[];
 }
 
+/** A series of a plot. */
 export interface Series {
   readonly draw: 'line' | 'dots' | 'cells' | 'mark';
   readonly tone: keyof typeof TONES;
@@ -43,12 +45,19 @@ type Range = [low: number, high: number];
 
 /** Room round the plotted area [px]. */
 export const MARGIN = { left: 52, right: 12, top: 8, bottom: 40 } as const;
+/**
+ * Height of a chart [px], of a map at most as a share of its width, share of a range that is kept free, and distance of
+ * ticks [px]; chosen.
+ */
 const CHART_HEIGHT = 160;
-const MOST_MAP_HEIGHT = 0.62; // of its width
+const MOST_MAP_HEIGHT = 0.62;
 const PAD = 0.04;
 const TICK_EVERY = { x: 80, y: 36 } as const;
 
-/** Every `step`th value from `first`, and behind `length` after it; NaN where unknown. */
+/**
+ * Every `step`th value from `first`; with a `length`, each is followed by its sum with that many values on. NaN:
+ * unknown.
+ */
 const every = ({ values }: Series, step: number, first: number, length = first): number[] =>
   values.flatMap((value, i) =>
     i % step === first
@@ -56,6 +65,7 @@ const every = ({ values }: Series, step: number, first: number, length = first):
       : [],
   );
 
+/** Range of all values of the series along an axis. */
 function rangeOf(series: readonly Series[], axis: 0 | 1): Range {
   const values = series.flatMap((each) => {
     if (each.draw === 'mark') return axis === 0 ? every(each, 1, 0) : [];
@@ -64,9 +74,10 @@ function rangeOf(series: readonly Series[], axis: 0 | 1): Range {
   return extent(values.filter(Number.isFinite)) ?? [0, 0];
 }
 
+/** A range of another length about the same middle. */
 const widened = ([low, high]: Range, to: number): Range => [(low + high - to) / 2, (low + high + to) / 2];
 
-/** With room at both ends, but for an end at 0: bars stand on it. */
+/** A range with room at both ends, except at an end that is 0: bars stand on it. */
 function padded([low, high]: Range): Range {
   if (high <= low) return widened([low, high], Math.abs(low) || 1);
   const pad = PAD * (high - low);

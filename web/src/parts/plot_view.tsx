@@ -1,10 +1,12 @@
+// View of a chart or map of results, as SVG.
 import { useLayoutEffect, useRef, useState } from 'preact/hooks';
 import { onScreen } from '../lib/on_screen';
 import { tidy } from '../lib/scale';
 import { dotSize, type Frame, frameOf, MARGIN, type Plot, pathOf, type Series, TONES } from './plot';
 
-const FIRST_WIDTH = 512; // until the page has measured it [px]
+const FIRST_WIDTH = 512; // of a plot until the page has measured it [px]; chosen
 
+/** Grid, ticks and the name of the horizontal axis. */
 function Axes({ frame, name }: { frame: Frame; name: string }) {
   const [right, bottom] = [frame.width - MARGIN.right, frame.height - MARGIN.bottom];
   return (
@@ -32,9 +34,10 @@ function Axes({ frame, name }: { frame: Frame; name: string }) {
   );
 }
 
+/** Style with the colour of a series. */
 const toneOf = ({ tone }: Series) => ({ '--tone': `var(--${TONES[tone]})` });
 
-/** What is in the legend. */
+/** The series that the legend names. */
 const namedIn = (series: readonly Series[]): readonly Series[] =>
   series.filter(({ name, values }) => name !== '' && values.length > 0);
 

@@ -1,4 +1,6 @@
-/** 'grid': cells of one kind, such as a heat map. */
+// Tables of results: their format, and which of their columns hold numbers.
+
+/** A table, or a grid, whose cells are of one kind, as in a heat map. */
 export interface Table {
   readonly part: 'table' | 'grid';
   readonly title: string;
@@ -6,8 +8,10 @@ export interface Table {
   readonly rows: readonly (readonly Cell[])[];
 }
 
+/** A cell of a table. */
 export type Cell = string | MoreThanText;
 
+/** A cell with marks, colours, a link or an interval. */
 export interface MoreThanText {
   readonly text: string;
   readonly hint?: string;
@@ -25,7 +29,7 @@ export const textOf = (cell: Cell | undefined): string => (typeof cell === 'obje
 
 const isNumber = (text: string): boolean => /^[-−+]?\d/.test(text);
 
-/** Of each column, whether most of what it says are numbers, which stand to the right. */
+/** For each column, whether most of its cells are numbers, which stand to the right. */
 export const areNumbers = ({ columns, rows }: Table): boolean[] =>
   columns.map((_, i) => {
     const texts = rows.map((row) => textOf(row[i])).filter((text) => text !== '' && text !== '–');

@@ -1,9 +1,10 @@
+// View of a table of results: links, code, shaded cells and confidence intervals.
 import { areNumbers, type Cell, type MoreThanText, type Table } from './table';
 
-const INTERVAL_WIDTH = 160; // [px]
-const MOST_COLUMNS = 9; // of a grid that has another beside it
+const INTERVAL_WIDTH = 160; // [px]; chosen
+const MOST_COLUMNS = 9; // of a grid that may stand beside another one; chosen
 
-/** An interval with what was found in it, and a stroke where the search began. */
+/** An interval with the value found in it as a dot, and the assumed value as a stroke. */
 function Interval({ of: [low, high, value, assumed] }: { of: NonNullable<MoreThanText['interval']> }) {
   const [least, most] = [Math.min(low, assumed, value), Math.max(high, assumed, value)];
   const at = (place: number): number =>
@@ -17,6 +18,7 @@ function Interval({ of: [low, high, value, assumed] }: { of: NonNullable<MoreTha
   );
 }
 
+/** Content of a cell. */
 function Contents({ cell }: { cell: Cell }) {
   if (typeof cell === 'string') return <>{cell}</>;
   return (

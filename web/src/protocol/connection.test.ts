@@ -1,15 +1,9 @@
-import { readFileSync } from 'node:fs';
 import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import { Connection, retryDelay } from './connection';
 import type { Socket } from './foxglove';
 import type { SourceEvents } from './source';
-
-const folder = new URL('../../../tests/protocol/fixtures/ros/', import.meta.url);
-const topics = JSON.parse(readFileSync(new URL('topics.json', folder), 'utf8')) as {
-  topic: string;
-  type: string;
-  schema: string;
-}[];
+import { bytesOf, topics } from './test_fixtures';
+import { TOPIC_NAMES } from './topics';
 
 /** A server on the other end of no network. */
 class FakeSocket implements Socket {
@@ -37,26 +31,15 @@ class FakeSocket implements Socket {
     });
     this.say({
       op: 'advertiseServices',
-      services: ['/pause', '/step'].map((name, id) => ({
-        id,
-        name,
-        type: 'x',
-        responseSchema: 'bool success\nstring message\n',
-      })),
+      services: ['/pause', '/step'].map((name, id) => ({ id, name, responseSchema: 'bool success\nstring message\n' })),
     });
   }
 }
 
 function start() {
   const sockets: FakeSocket[] = [];
-  const events = {
-    open: vi.fn(),
-    lost: vi.fn(),
-    message: vi.fn(),
-    services: vi.fn(),
-    settings: vi.fn(),
-    notice: vi.fn(),
-  };
+  const state = { open: vi.fn(), lost: vi.fn(), services: vi.fn() };
+  const events = { ...state, message: vi.fn(), settings: vi.fn(), notice: vi.fn() };
   const connection = new Connection(() => {
     const socket = new FakeSocket();
     sockets.push(socket);
@@ -76,20 +59,9 @@ describe('connection', () => {
     const subscribed = last().sent.map(
       (text) => (JSON.parse(text as string) as { subscriptions: { id: number; channelId: number }[] }).subscriptions[0],
     );
-    expect(subscribed.map((s) => topics[s?.channelId ?? -1]?.topic).sort()).toEqual([
-      '/chicane/change',
-      '/chicane/frame',
-      '/chicane/lap',
-      '/chicane/limit',
-      '/chicane/plan',
-      '/chicane/run',
-      '/chicane/situation',
-      '/reference',
-      '/track/centre',
-      '/track/left',
-      '/track/right',
-    ]);
-    const run = readFileSync(new URL('chicane_run.bin', folder));
+    const wanted = TOPIC_NAMES.filter((name) => name !== '/chicane/past'); // which the server has for viewers alone
+    expect(subscribed.map((s) => topics[s?.channelId ?? -1]?.topic).sort()).toEqual([...wanted].sort());
+    const run = bytesOf('chicane_run.bin');
     const channel = topics.findIndex(({ topic }) => topic === '/chicane/run');
     const id = subscribed.find((s) => s?.channelId === channel)?.id ?? -1;
     last().sayBytes(new Uint8Array([1, id, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, ...run]));

@@ -1,3 +1,4 @@
+// Client of the Foxglove WebSocket protocol: subscriptions, services, parameters, and reconnection.
 import { decoder, encodeBool, encodeNothing, encodeText } from './decoder';
 import {
   type Channel,
@@ -8,27 +9,41 @@ import {
   type Socket,
   serviceCall,
 } from './foxglove';
-import type { AskAnswer, ServiceName, SetAnswer, Setting, Source, SourceEvents } from './source';
+import {
+  type AskAnswer,
+  isSetting,
+  type ServiceName,
+  type SetAnswer,
+  type Setting,
+  type Source,
+  type SourceEvents,
+} from './source';
 import { TOPIC_NAMES, type Topics } from './topics';
 
-/** Both names mean the same protocol; the server picks one. */
+/** Names of the protocol, new and old, of which the server picks one. */
 export const SUBPROTOCOLS = ['foxglove.sdk.v1', 'foxglove.websocket.v1'];
+
+/** Address at which the program that serves this page answers viewers, with options after '?'. */
+export function viewerUrl(options = ''): URL {
+  const url = new URL('viewer', location.href);
+  url.search = options;
+  url.protocol = location.protocol === 'https:' ? 'wss:' : 'ws:';
+  return url;
+}
 
 /** Delay before reconnection attempt 1, 2, … [ms]: 250 ms at first, at most two seconds. */
 export const retryDelay = (attempt: number): number => Math.min(2000, 250 * 2 ** (attempt - 1));
 
-const ALL = 'all'; // request id
+const ALL = 'all'; // id of requests for all parameters
 const LOST = 'the connection was lost';
-/** A value that was not answered before a connection was lost is sent once more if the next one comes soon [ms]. */
-const PATIENCE = 10_000;
+/** Time after a lost connection within which requests without an answer are sent again [ms]; chosen. */
+const RESEND_WITHIN_MS = 10_000;
 
-const isSetting = (value: Parameter['value']): value is Setting =>
-  ['number', 'boolean', 'string'].includes(typeof value);
-
+/** A request to change a setting that is not answered yet. */
 interface PendingSet {
   readonly name: string;
   readonly value: Setting;
-  sentence: string | null;
+  sentence: string | null; // of the refusal, which precedes the answer
   resolve(answer: SetAnswer): void;
 }
 
@@ -41,15 +56,15 @@ export class Connection implements Source {
   readonly #events: SourceEvents;
   #socket: Socket | undefined;
   #readers = new Map<number, (bytes: DataView) => void>(); // by subscription
-  #attempt = 0;
+  #attempt = 0; // to reconnect, since the last success
   #timer: ReturnType<typeof setTimeout> | undefined;
-  #services = new Map<string, Service>();
-  #calls = new Map<number, { service: Service; resolve: (answer: AskAnswer) => void }>();
+  #services = new Map<string, Service>(); // by name
+  #calls = new Map<number, { service: Service; resolve: (answer: AskAnswer) => void }>(); // by call id
   #sets = new Map<string, PendingSet>(); // by request id, in the order sent
   #unanswered: readonly PendingSet[] = []; // when the connection was lost
   #lostAt = 0; // performance.now() [ms]
-  #session = '';
-  #nextCall = 1;
+  #session = ''; // of the server that answered last
+  #nextCall = 1; // id of the next request
   #hasParameters = false;
 
   constructor(open: () => Socket, events: SourceEvents) {
@@ -104,9 +119,10 @@ export class Connection implements Source {
     this.#say({ op: 'setParameters', parameters: [parameter], id });
   }
 
-  /** The same program soon after takes what it has not answered; hands on the wheel are of their moment. */
+  /** Sends unanswered requests again where the same program is back in time; not those of driving by hand. */
   #sendAgain(session: string): void {
-    const isSame = session === this.#session && performance.now() - this.#lostAt <= PATIENCE && this.#hasParameters;
+    const isSame =
+      session === this.#session && performance.now() - this.#lostAt <= RESEND_WITHIN_MS && this.#hasParameters;
     this.#session = session;
     for (const request of this.#unanswered) {
       if (isSame && !request.name.startsWith('manual.')) this.#sendSet(request);
@@ -123,6 +139,7 @@ export class Connection implements Source {
     this.#socket?.send(JSON.stringify(message));
   }
 
+  /** Opens a socket and listens to it. */
   #connect(): void {
     const socket = this.#open();
     this.#socket = socket;
@@ -138,6 +155,7 @@ export class Connection implements Source {
     };
   }
 
+  /** Handles a message of the server as text. */
   #take(message: FromServer): void {
     switch (message.op) {
       case 'serverInfo':
@@ -226,6 +244,7 @@ export class Connection implements Source {
     this.#calls.delete(callId);
   }
 
+  /** Ends open requests, keeps those to change settings, and plans the next attempt. */
   #lost(): void {
     this.#socket = undefined;
     this.#hasParameters = false;
@@ -235,7 +254,7 @@ export class Connection implements Source {
     if (this.#sets.size > 0) this.#lostAt = performance.now();
     this.#unanswered = [...this.#unanswered, ...this.#sets.values()];
     this.#sets.clear();
-    if (performance.now() - this.#lostAt > PATIENCE) this.#sendAgain('');
+    if (performance.now() - this.#lostAt > RESEND_WITHIN_MS) this.#sendAgain('');
     const delay = retryDelay(++this.#attempt);
     this.#events.lost(this.#attempt, delay);
     this.#timer = setTimeout(() => this.#connect(), delay);

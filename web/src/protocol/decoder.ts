@@ -1,6 +1,6 @@
 // Messages in CDR, by the ROS 2 definition of their type: its fields, then each type that it uses under "MSG: name".
 
-/** A place in a message. Numbers are aligned to their own size, counted from behind the header of 4 bytes. */
+/** Read position in a message. Numbers are aligned to their own size, counted from the end of the 4-byte header. */
 class Cursor {
   readonly view: DataView;
   readonly isLittle: boolean;
@@ -14,7 +14,7 @@ class Cursor {
     this.isLittle = representation === 1;
   }
 
-  /** Where a value of so many bytes begins, and on behind it. */
+  /** Moves past the next value, of `size` bytes; returns where it begins. */
   take(size: number, alignment = 1): number {
     const begin = 4 + Math.ceil((this.#at - 4) / alignment) * alignment;
     this.#need(begin + size);
@@ -22,11 +22,12 @@ class Cursor {
     return begin;
   }
 
+  /** Reads the length of a list or a string. */
   count(): number {
     return this.view.getUint32(this.take(4, 4), this.isLittle);
   }
 
-  /** Before a list is made: whether so many elements of at least `size` bytes can follow. */
+  /** Throws unless `count` elements of at least `size` bytes can follow; asked before a list is allocated. */
   need(count: number, size: number): void {
     this.#need(this.#at + count * size);
   }
@@ -37,8 +38,10 @@ class Cursor {
   }
 }
 
+/** Reads one value at the position, and moves past it. */
 type Read = (from: Cursor) => unknown;
 
+/** Types of numbers: size, reader of DataView, and list. */
 const NUMBERS = {
   int8: { size: 1, get: 'getInt8', list: Int8Array },
   uint8: { size: 1, get: 'getUint8', list: Uint8Array },
@@ -61,7 +64,7 @@ function readString(from: Cursor): string {
   return text.decode(new Uint8Array(buffer, byteOffset + from.take(length), Math.max(0, length - 1)));
 }
 
-/** A type that is defined behind the others; without a package: of the same one, or the only one of that name. */
+/** Reader of a type by its name; without a package, of the package `own` or the only type of that name. */
 function find(type: string, own: string, types: ReadonlyMap<string, Read>): Read {
   const names = [...types.keys()].filter((name) => name === type || name.endsWith(`/${type}`));
   const exact = [type, `${own}/${type}`].find((name) => types.has(name));
@@ -71,7 +74,7 @@ function find(type: string, own: string, types: ReadonlyMap<string, Read>): Read
   throw new Error(`message definition: got the ${known}`);
 }
 
-/** `own`: the package whose message has the field. */
+/** Reader of one value of a type; `own` is the package of the message that has the field. */
 function readerOf(type: string, own: string, types: ReadonlyMap<string, Read>): Read {
   if (isNumber(type)) {
     const { size, get } = NUMBERS[type];
@@ -83,14 +86,14 @@ function readerOf(type: string, own: string, types: ReadonlyMap<string, Read>): 
     const [sec, nsec] = [readerOf('int32', own, types), readerOf('uint32', own, types)];
     return (from) => ({ sec: sec(from), nsec: nsec(from) });
   }
-  let known: Read | undefined; // found at the first message: it is defined behind those that use it
+  let known: Read | undefined; // found at the first message: types are defined after those that use them
   return (from) => {
     known ??= find(type, own, types);
     return known(from);
   };
 }
 
-/** `count`: of a list of fixed length; not-a-number: the message says how many follow. */
+/** Reader of a list of `count` values; not-a-number: the message says how many follow. */
 function listReader(type: string, count: number, one: Read): Read {
   const size = isNumber(type) ? NUMBERS[type].size : 1;
   const lengthOf = (from: Cursor): number => {
@@ -110,6 +113,7 @@ function listReader(type: string, count: number, one: Read): Read {
 /** "float64[3] name": a type, perhaps bounded or a list, and a name; what follows is a default value. */
 const FIELD = /^([\w/]+)(?:<=\d+)?(?:\[(<=)?(\d*)\])?\s+(\w+)(?!\s*=)\b/;
 
+/** Reader of a message by the lines of its definition. */
 function structReader(lines: readonly string[], own: string, types: ReadonlyMap<string, Read>): Read {
   const fields = lines.flatMap((line): [string, Read][] => {
     const [all, named = '', bound, length, name = ''] = FIELD.exec(line.replace(/#.*/, '').trim()) ?? [];

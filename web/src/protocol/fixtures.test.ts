@@ -1,18 +1,9 @@
-import { readFileSync } from 'node:fs';
 import { parse } from '@foxglove/rosmsg';
 import { MessageReader } from '@foxglove/rosmsg2-serialization';
 import { describe, expect, it } from 'vitest';
 import { decoder } from './decoder';
+import { bytesOf, FOLDER, topics } from './test_fixtures';
 import { TOPIC_NAMES } from './topics';
-
-// Written by tests/protocol/ros_messages_test.cpp; the numbers are those of tests/protocol/viewer_samples.hpp.
-const folder = new URL('../../../tests/protocol/fixtures/ros/', import.meta.url);
-const topics = JSON.parse(readFileSync(new URL('topics.json', folder), 'utf8')) as {
-  topic: string;
-  type: string;
-  file: string;
-  schema: string;
-}[];
 
 /** As JSON with a field a line: numbers beyond it as texts, lists of numbers as one text. */
 function readable(message: unknown): string {
@@ -31,14 +22,14 @@ describe('messages of the C++ side', () => {
   });
 
   it.each(topics)('$topic is read as the reference implementation reads it', ({ schema, file }) => {
-    const bytes = readFileSync(new URL(file, folder));
+    const bytes = bytesOf(file);
     const reference = new MessageReader(parse(schema, { ros2: true }));
     expect(decoder(schema)(bytes)).toEqual(reference.readMessage(bytes));
   });
 
   // Beside the bytes, for people and for other decoders; renewed with them, and to be read before it is kept.
   it.each(topics)('$topic carries the values that stand beside its bytes', async ({ schema, file }) => {
-    const message = decoder(schema)(readFileSync(new URL(file, folder)));
-    await expect(readable(message)).toMatchFileSnapshot(new URL(file.replace(/bin$/, 'json'), folder).pathname);
+    const message = decoder(schema)(bytesOf(file));
+    await expect(readable(message)).toMatchFileSnapshot(new URL(file.replace(/bin$/, 'json'), FOLDER).pathname);
   });
 });

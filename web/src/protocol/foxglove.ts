@@ -12,6 +12,7 @@ export interface Socket {
   close(): void;
 }
 
+/** A topic that a server advertises. */
 export interface Channel {
   readonly id: number;
   readonly topic: string;
@@ -19,6 +20,7 @@ export interface Channel {
   readonly schema: string;
 }
 
+/** A service that a server advertises. */
 export interface Service {
   readonly id: number;
   readonly name: string;
@@ -26,13 +28,14 @@ export interface Service {
   readonly responseSchema?: string; // of older servers
 }
 
+/** A parameter with its value. */
 export interface Parameter {
   readonly name: string;
   readonly value?: unknown;
   readonly type?: string;
 }
 
-/** What a server says as text; it may say more. */
+/** Messages of a server as text, as far as this page reads them. */
 export type FromServer =
   | { readonly op: 'serverInfo'; readonly capabilities: readonly string[]; readonly sessionId?: string }
   | { readonly op: 'advertise'; readonly channels: readonly Channel[] }
@@ -41,19 +44,19 @@ export type FromServer =
   | { readonly op: 'serviceCallFailure'; readonly callId: number; readonly message: string }
   | { readonly op: 'status'; readonly message: string };
 
-/** What a server says as bytes: a message of a subscription, or the answer to a call. */
+/** Messages of a server as bytes: of a subscription, or the answer to a call. */
 export type BytesFromServer =
   | { readonly op: 'data'; readonly subscription: number; readonly bytes: DataView }
   | { readonly op: 'answer'; readonly callId: number; readonly bytes: DataView };
 
-const HEAD_BYTES = 13;
+const HEAD_BYTES = 13; // of all binary messages
 
-/** Null: something else, or too short. */
+/** Reads a binary message; null where it is of another kind, or too short. */
 export function readBytes(data: ArrayBuffer): BytesFromServer | null {
   if (data.byteLength < HEAD_BYTES) return null;
   const view = new DataView(data);
   const kind = view.getUint8(0);
-  // Behind the subscription: the time of the message, 8 bytes.
+  // The time of the message, 8 bytes, follows the subscription.
   if (kind === 1) return { op: 'data', subscription: view.getUint32(1, true), bytes: new DataView(data, HEAD_BYTES) };
   // Service, call, and the name of the encoding with its length.
   const begin = HEAD_BYTES + view.getUint32(9, true);

@@ -1,11 +1,9 @@
 import { readFileSync } from 'node:fs';
 import { parse } from '@foxglove/rosmsg';
 import { describe, expect, it } from 'vitest';
+import { topics } from './test_fixtures';
 
-const read = (path: string): unknown => JSON.parse(readFileSync(new URL(`../../../${path}`, import.meta.url), 'utf8'));
-
-const topics = read('tests/protocol/fixtures/ros/topics.json') as { topic: string; schema: string }[];
-const layout = read('data/layouts/foxglove.json') as {
+const layout = JSON.parse(readFileSync(new URL('../../../data/layouts/foxglove.json', import.meta.url), 'utf8')) as {
   configById: Record<string, { paths?: { value: string }[]; topics?: Record<string, unknown>; topicToRender?: string }>;
   layout: unknown;
 };

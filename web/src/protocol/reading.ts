@@ -3,29 +3,30 @@ import type { Socket } from './foxglove';
 // What this page adds to the protocol: it acknowledges what it has read, so that the program sends no more than
 // arrives in time, and measures how old the newest frame is when it arrives (docs/viewer.md).
 
-/** What the program says in these additions. */
+/** Messages of the program beyond the protocol. */
 type Notice =
   | { readonly op: 'heard'; readonly at: number; readonly held: number }
   | { readonly op: 'pastLeft'; readonly messages: number };
 
-/** What a page learns of its connection. */
+/** What the program reports about the connection. */
 export interface ReadingEvents {
   /** The next frame was sent at most `seconds` ago. */
   age(seconds: number): void;
-  /** Frames of before that are still to come. */
+  /** Number of frames from before the page was opened that are still to come. */
   pastLeft(messages: number): void;
 }
 
-/** How to acknowledge: not at all where what carries the messages does it, such as a worker's port. */
+/** Whether to acknowledge, and by which clock; a transport such as a worker's port acknowledges by itself. */
 export interface Acknowledging {
   readonly acknowledges?: boolean;
   readonly now?: () => number; // [ms]
 }
 
+/** Bytes, or time since the last one, after which the next acknowledgement is due; chosen. */
 const EVERY_BYTES = 4096;
 const EVERY_MS = 40;
 
-/** What our own server says; null for messages of the protocol. */
+/** Reads a message beyond the protocol; null for messages of the protocol. */
 function noticeIn(text: string): Notice | null {
   if (!/^\{[^{}]*"op":"(heard|pastLeft)"[^{}]*\}$/.test(text)) return null;
   return JSON.parse(text) as Notice;
@@ -38,8 +39,8 @@ function noticeIn(text: string): Notice | null {
 export class ReadingSocket implements Socket {
   readonly #socket: Socket;
   readonly #now: () => number; // [ms]
-  #read = 0;
-  #acknowledged = 0;
+  #read = 0; // [byte]
+  #acknowledged = 0; // of them
   #acknowledgedAt = Number.NEGATIVE_INFINITY;
   onclose: Socket['onclose'] = null;
   onmessage: Socket['onmessage'] = null;
@@ -54,7 +55,7 @@ export class ReadingSocket implements Socket {
     socket.onclose = (event) => this.onclose?.(event);
     socket.onmessage = (event) => {
       const { data } = event;
-      // First: whatever a reader makes of a message, it has come.
+      // Counted before it is read: the program would wait for ever if a message cannot be read.
       if (acknowledges && data instanceof ArrayBuffer) this.#count(data.byteLength);
       const said = typeof data === 'string' ? noticeIn(data) : null;
       if (said?.op === 'heard') events.age(Math.max(0, (now() - said.at) / 1000 - said.held));

@@ -1,4 +1,5 @@
 import { fields, list, number, text } from '../lib/json';
+import { isSetting, type Setting } from './source';
 
 /** One setting as /schema.json describes it; its source is the table of src/chicane/protocol/schema.hpp. */
 export interface SchemaEntry {
@@ -9,9 +10,9 @@ export interface SchemaEntry {
   readonly minimum: number | null;
   readonly maximum: number | null;
   readonly choices: readonly string[];
-  readonly default: number | boolean | string | null;
+  readonly default: Setting | null;
   /** Value at the start of the run; null for controls of the run, and for older programs. */
-  readonly start: number | boolean | string | null;
+  readonly start: Setting | null;
   readonly meaning: string;
   /** Of a switch for a fault; else absent. */
   readonly fault?: FaultEntry;
@@ -31,6 +32,7 @@ export interface FaultEntry {
   readonly strength_meaning: string;
 }
 
+/** Reads the description of a fault; undefined where there is none. */
 function readFault(value: unknown): FaultEntry | undefined {
   if (typeof value !== 'object' || value === null) return undefined;
   const all = fields(value);
@@ -46,10 +48,11 @@ function readFault(value: unknown): FaultEntry | undefined {
 
 const KINDS: readonly SchemaEntry['kind'][] = ['number', 'integer', 'bool', 'choice', 'text'];
 
+/** A finite number, else null. */
 const numberOr = (value: unknown): number | null => (Number.isFinite(value) ? (value as number) : null);
 
-const settingOr = (value: unknown): number | boolean | string | null =>
-  typeof value === 'number' || typeof value === 'boolean' || typeof value === 'string' ? value : null;
+/** A value that a setting can have, else null. */
+const settingOr = (value: unknown): Setting | null => (isSetting(value) ? value : null);
 
 /** Reads the well-formed entries of a parsed /schema.json. */
 export const readSchema = (json: unknown): SchemaEntry[] =>

@@ -1,11 +1,7 @@
-import { readFileSync } from 'node:fs';
 import { parse } from '@foxglove/rosmsg';
 import { ros2humble, ros2jazzy } from '@foxglove/rosmsg-msgs-common';
 import { describe, expect, it } from 'vitest';
-
-const topics = JSON.parse(
-  readFileSync(new URL('../../../tests/protocol/fixtures/ros/topics.json', import.meta.url), 'utf8'),
-) as { type: string; schema: string }[];
+import { topics } from './test_fixtures';
 
 type Definitions = ReturnType<typeof parse>;
 

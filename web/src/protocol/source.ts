@@ -1,14 +1,19 @@
+// Interface between the page and the source of its messages: a running program or a recording.
 import type { TopicName, Topics } from './topics';
 
 /** The value of a setting, in the unit of its key. */
 export type Setting = number | boolean | string;
 
+/** Whether a setting can have the value. */
+export const isSetting = (value: unknown): value is Setting => ['number', 'boolean', 'string'].includes(typeof value);
+
+/** Services that this page calls. */
 export type ServiceName = '/pause' | '/step' | '/reset' | '/what_if' | '/rival';
 
 /** The server's answer to a question in words. */
 export interface AskAnswer {
   readonly isTaken: boolean;
-  /** What it says: of '/what_if' and '/rival' the number of the question, or why it was not taken. */
+  /** Why it was not taken; of '/what_if' and '/rival' that were taken, the number of the question. */
   readonly message: string;
 }
 

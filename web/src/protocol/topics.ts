@@ -1,3 +1,4 @@
+// Topics that this page subscribes to, with the types and default values of their messages.
 import {
   type Stamp,
   UNKNOWN_CHANGE,

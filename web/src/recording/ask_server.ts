@@ -1,5 +1,5 @@
 import { effect } from '@preact/signals';
-import { Connection, SUBPROTOCOLS } from '../protocol/connection';
+import { Connection, SUBPROTOCOLS, viewerUrl } from '../protocol/connection';
 import { readSchema, type SchemaEntry } from '../protocol/schema';
 import type { AskAnswer } from '../protocol/source';
 import { askedLog, forgetAnswer, loggedSchema } from '../state/what_if';
@@ -10,13 +10,11 @@ import { played, position } from './player';
 /** One question on a connection of its own. */
 function ask(question: string): Promise<AskAnswer> {
   return new Promise((resolve) => {
-    const url = new URL('viewer', location.href);
-    url.protocol = location.protocol === 'https:' ? 'wss:' : 'ws:';
     const end = (answer: AskAnswer): void => {
       connection.close();
       resolve(answer);
     };
-    const connection: Connection = new Connection(() => new WebSocket(url, SUBPROTOCOLS), {
+    const connection: Connection = new Connection(() => new WebSocket(viewerUrl(), SUBPROTOCOLS), {
       open: () => undefined,
       lost: () => end({ isTaken: false, message: 'the program does not answer' }),
       message: () => undefined,
@@ -35,7 +33,7 @@ async function settingsOf(log: number): Promise<SchemaEntry[] | null> {
   return answer?.ok ? readSchema(await answer.json().catch(() => null)) : null;
 }
 
-/** The page shows recordings of a program that answers questions about them. */
+/** Offers questions about the recordings that the program serves, and loads the settings of the one that plays. */
 export function offerWhatIf(): void {
   effect(() => {
     const log = played.value;

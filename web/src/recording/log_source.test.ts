@@ -1,6 +1,6 @@
 import { parse } from '@foxglove/rosmsg';
 import { MessageWriter } from '@foxglove/rosmsg2-serialization';
-import { McapWriter } from '@mcap/core';
+import { McapWriter, TempBuffer } from '@mcap/core';
 import { beforeAll, describe, expect, it } from 'vitest';
 import type { Frame, TopicName } from '../protocol/topics';
 import { type LogEvents, LogSource, landmarksOf, runStarts } from './log_source';
@@ -10,34 +10,11 @@ import { BytesReadable, HttpReadable } from './readable';
 // A small recording of 10 s: frames at 10 Hz on a straight, a lap at 4 s, off the road at 6 s, a setting changed at 7
 // s, one fault from 8 s to 9 s and another that begins where that ends. It was driven at 15 times its pace.
 const FRAME =
-  'float64 time_s\nfloat64 x_m\nfloat64 y_m\nfloat64 yaw_rad\nfloat64 steer_applied_rad\n' +
-  'uint32 off_track_events\nuint8 rung\nbool is_gated\nuint32 active_faults\nfloat64 pace\n';
+  'float64 time_s\nuint32 off_track_events\nuint8 rung\nbool is_gated\nuint32 active_faults\nfloat64 pace\n';
 const LAP = 'uint32 lap\nfloat64 lap_time_s\n';
 const CHANGE = 'string name\nstring value\n';
 const RUN = 'string track\nbool is_paused\nstring[] fault_names\n';
 const HOUR_NS = 3_600_000_000_000n; // log times need not begin at zero
-
-class Bytes {
-  parts: Uint8Array[] = [];
-  length = 0;
-  write(part: Uint8Array): Promise<void> {
-    this.parts.push(part.slice());
-    this.length += part.byteLength;
-    return Promise.resolve();
-  }
-  position(): bigint {
-    return BigInt(this.length);
-  }
-  whole(): Uint8Array {
-    const all = new Uint8Array(this.length);
-    let at = 0;
-    for (const part of this.parts) {
-      all.set(part, at);
-      at += part.byteLength;
-    }
-    return all;
-  }
-}
 
 describe('the runs of a recording', () => {
   const message = (topic: TopicName, time: number, content: object = {}) => ({
@@ -55,7 +32,7 @@ describe('the runs of a recording', () => {
 });
 
 async function record(isClosed = true): Promise<Uint8Array> {
-  const file = new Bytes();
+  const file = new TempBuffer();
   const writer = new McapWriter({ writable: file, chunkSize: 2000 });
   await writer.start({ profile: 'ros2', library: 'test' });
   const channels = new Map<string, { id: number; writer: MessageWriter }>();
@@ -65,11 +42,8 @@ async function record(isClosed = true): Promise<Uint8Array> {
     ['/chicane/lap', LAP],
     ['/chicane/change', CHANGE],
   ] as const) {
-    const schemaId = await writer.registerSchema({
-      name: topic,
-      encoding: 'ros2msg',
-      data: new TextEncoder().encode(text),
-    });
+    const data = new TextEncoder().encode(text);
+    const schemaId = await writer.registerSchema({ name: topic, encoding: 'ros2msg', data });
     const id = await writer.registerChannel({ schemaId, topic, messageEncoding: 'cdr', metadata: new Map() });
     channels.set(topic, { id, writer: new MessageWriter(parse(text, { ros2: true })) });
   }
@@ -77,34 +51,20 @@ async function record(isClosed = true): Promise<Uint8Array> {
     const channel = channels.get(topic);
     if (!channel) throw new Error(topic);
     const logTime = HOUR_NS + BigInt(Math.round(seconds * 1e9));
-    await writer.addMessage({
-      channelId: channel.id,
-      sequence: 0,
-      logTime,
-      publishTime: logTime,
-      data: channel.writer.writeMessage(message),
-    });
+    const data = channel.writer.writeMessage(message);
+    await writer.addMessage({ channelId: channel.id, sequence: 0, logTime, publishTime: logTime, data });
   };
   await add('/chicane/run', 0, { track: 'straight', is_paused: false, fault_names: ['link_lost', 'half_grip'] });
   for (let i = 0; i <= 100; ++i) {
     const time = i / 10;
-    await add('/chicane/frame', time, {
-      time_s: time,
-      x_m: 2 * time,
-      y_m: 0,
-      yaw_rad: 0,
-      steer_applied_rad: 0.01 * i,
-      off_track_events: time >= 6 ? 1 : 0,
-      rung: 0,
-      is_gated: false,
-      active_faults: time < 8 ? 0 : time < 9 ? 2 : 1,
-      pace: 15,
-    });
+    const faults = time < 8 ? 0 : time < 9 ? 2 : 1;
+    const events = { off_track_events: time >= 6 ? 1 : 0, rung: 0, is_gated: false, active_faults: faults };
+    await add('/chicane/frame', time, { time_s: time, ...events, pace: 15 });
     if (i === 40) await add('/chicane/lap', time, { lap: 1, lap_time_s: 4 });
     if (i === 70) await add('/chicane/change', time, { name: 'latency_ms', value: '150' });
   }
   if (isClosed) await writer.end();
-  return file.whole();
+  return file.get();
 }
 
 class Page implements LogEvents {

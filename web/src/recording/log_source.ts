@@ -1,3 +1,4 @@
+// Plays a recording as a source of messages: seek, step, pace, and the events of its time line.
 import { begunBits } from '../lib/bits';
 import { nameInWords, reasonOf } from '../lib/words';
 import type { ServiceName, SetAnswer, Setting, Source, SourceEvents } from '../protocol/source';
@@ -19,6 +20,7 @@ export interface LogEvents extends SourceEvents {
   moved(time: number, isPlaying: boolean): void;
 }
 
+/** Topics that describe a run, sent as of any time. */
 const STATIC: readonly TopicName[] = [
   '/chicane/run',
   '/track/left',
@@ -27,6 +29,7 @@ const STATIC: readonly TopicName[] = [
   '/chicane/lap',
   '/chicane/limit',
 ];
+/** Topics of the moments of a run. */
 const MOVING: readonly TopicName[] = [
   '/chicane/frame',
   '/chicane/situation',
@@ -34,12 +37,14 @@ const MOVING: readonly TopicName[] = [
   '/reference',
   '/chicane/change',
 ];
+/** Topics of which only the last seconds matter after a jump. */
 const SHORT: readonly TopicName[] = ['/chicane/situation', '/chicane/plan', '/reference'];
-/** How far back frames are sent after a jump: the reach of the plots [s]. */
+/** Time before a jump for which frames are sent [s]: the longest reach of the plots. */
 const LOOK_BACK_S = 60;
-/** How far back plans are sent: the page compares with the plan of a second ago [s]. */
+/** Time before a jump for which plans are sent [s]: more than the age of the plan that is compared (HINDSIGHT_S). */
 const PLAN_BACK_S = 1.2;
-const SEGMENT_S = 4; // read ahead at once
+const SEGMENT_S = 4; // length that is read ahead at once; chosen
+/** Bounds of the pace: those of the program's run.pace. */
 const LEAST_PACE = 0.05;
 const MOST_PACE = 20;
 
@@ -50,7 +55,7 @@ const MOST_PACE = 20;
 export class LogSource implements Source {
   readonly log: McapLog;
   readonly #events: LogEvents;
-  #static: LoggedMessage[] = [];
+  #static: LoggedMessage[] = []; // all messages of STATIC
   #starts: readonly number[] = [0];
   #shown = 0; // the run whose laps are sent
   #segment: LoggedMessage[] = [];
@@ -120,7 +125,7 @@ export class LogSource implements Source {
     const to = Math.min(Math.max(time, 0), this.log.duration);
     this.#position = to;
     this.#events.moved(to, this.#isPlaying);
-    const begin = this.#starts[this.runAt(to)] ?? 0; // what was before belongs to another run
+    const begin = this.#starts[this.runAt(to)] ?? 0; // of the run that is driven then
     const [past, plans] = await Promise.all([
       this.log.read(
         MOVING.filter((topic) => !SHORT.includes(topic)),
@@ -181,6 +186,7 @@ export class LogSource implements Source {
     if (!this.#isPlaying) this.#sendStatic(until);
   }
 
+  /** Begins or ends playing; from the end of the recording it begins again. */
   async #play(isPlaying: boolean): Promise<null> {
     if (isPlaying && this.#position >= this.log.duration) await this.seek(0);
     this.#isPlaying = isPlaying;
@@ -190,6 +196,7 @@ export class LogSource implements Source {
     return null;
   }
 
+  /** Reads the next segment before it is due. */
   async #readAhead(): Promise<void> {
     const enough = this.#position + (SEGMENT_S / 2) * Math.max(1, this.#pace);
     if (this.#isReading || this.#readTo >= enough || this.#readTo >= this.log.duration) return;

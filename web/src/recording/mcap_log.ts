@@ -1,3 +1,4 @@
+// Reader of MCAP recordings: decoded messages of the topics that this page knows.
 import { McapIndexedReader, type McapTypes } from '@mcap/core';
 import { decompress } from 'fzstd';
 import { reasonOf } from '../lib/words';
@@ -74,6 +75,7 @@ export class McapLog {
     }
   }
 
+  /** The same messages as a list. */
   async read(topics: readonly TopicName[], from: number, to: number): Promise<LoggedMessage[]> {
     const all: LoggedMessage[] = [];
     for await (const message of this.messages(topics, from, to)) all.push(message);

@@ -3,13 +3,13 @@ import { type Fields, fields, list, number, text } from '../lib/json';
 /**
  * What the page shows: a live run, or recordings served by `chicane replay`.
  */
-export type Mode =
-  | { readonly name: 'live' }
-  | { readonly name: 'replay'; readonly logs: readonly ListedLog[]; readonly start: number };
+export type Mode = { readonly name: 'live' } | ServedLogs;
 
-export interface ListedLog {
-  readonly name: string;
-  readonly url: string;
+/** Recordings that the program serves, and the time to begin at [s]. */
+export interface ServedLogs {
+  readonly name: 'replay';
+  readonly logs: readonly { readonly name: string; readonly url: string }[];
+  readonly start: number;
 }
 
 /** Reads the server's mode.json; anything else means a live run. */
@@ -25,6 +25,7 @@ export function modeOf(answer: unknown): Mode {
   };
 }
 
+/** Asks the server what it shows. */
 export async function findMode(): Promise<Mode> {
   if (__PAGE__ || location.protocol === 'file:') return { name: 'live' };
   const answer = await fetch('mode.json').catch(() => null);

@@ -1,5 +1,6 @@
+// Opens recordings that a program serves, or that were dropped on the page.
 import { McapLog } from './mcap_log';
-import type { Mode } from './mode';
+import type { ServedLogs } from './mode';
 import { BytesReadable, HttpReadable } from './readable';
 
 /** Opened recordings, and where to start [s]. */
@@ -9,7 +10,7 @@ export interface Recordings {
 }
 
 /** Rejects with a reason if a recording cannot be read. */
-export const openRecordings = async ({ logs, start }: Extract<Mode, { name: 'replay' }>): Promise<Recordings> => ({
+export const openRecordings = async ({ logs, start }: ServedLogs): Promise<Recordings> => ({
   logs: await Promise.all(logs.map(({ name, url }) => McapLog.open(name, new HttpReadable(url)))),
   start,
 });

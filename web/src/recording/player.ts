@@ -1,3 +1,4 @@
+// State of the recordings that are shown: the one that plays, its time line, its laps, and another one as a ghost.
 import { computed, effect, untracked } from '@preact/signals';
 import { store } from '../lib/store';
 import { reasonOf } from '../lib/words';
@@ -17,12 +18,11 @@ import { everyFrame } from '../state/ticker';
 import { offerLaps } from './add_laps';
 import { type Landmark, LogSource, landmarksOf } from './log_source';
 import type { McapLog } from './mcap_log';
-import type { Mode } from './mode';
+import type { ServedLogs } from './mode';
 import { openFiles, openRecordings, type Recordings } from './open';
 import { type LoggedRun, runsOf } from './runs_of_log';
 
-// State of the time line.
-
+/** The recording that plays; null in a live run. */
 export const player = store.signal<LogSource | null>('page', null);
 export const logs = store.signal<readonly McapLog[]>('page', []);
 /** Index of the one that is played. */
@@ -30,7 +30,7 @@ export const played = store.signal('page', 0);
 export const position = store.signal('page', 0); // [s]
 export const isPlaying = store.signal('page', false);
 export const landmarks = store.signal<readonly Landmark[]>('page', []);
-/** Share of the recording that has been searched for landmarks. */
+/** Share of the recording that has been searched for landmarks, in [0, 1]. */
 export const searched = store.signal('page', 0);
 export const duration = computed(() => player.value?.log.duration ?? 0);
 
@@ -39,6 +39,7 @@ const PACE = readSchema([
   { key: 'run.pace', kind: 'number', minimum: 0.05, maximum: 20, default: 1, meaning: 'How fast the recording plays.' },
 ]);
 
+/** All frames of a recording. */
 async function framesOf(log: McapLog): Promise<{ time: number; frame: Frame }[]> {
   const frames = await log.read(['/chicane/frame'], 0, log.duration);
   return frames.map(({ time, message }) => ({ time, frame: complete('/chicane/frame', message as Frame) }));
@@ -96,24 +97,21 @@ export async function showBeside(which: number, log = logs.value[played.value]):
   ghosts.recording = new RecordedDrive(rival.name, posesOf(await framesOf(rival)), Infinity, () => position.value);
 }
 
+/** Track of a recording and its length, as one text. */
 async function trackOf(log: McapLog): Promise<string> {
   const [first] = await log.read(['/chicane/run'], 0, log.duration);
   const run = complete('/chicane/run', (first?.message ?? {}) as Run);
   return `${run.track} ${run.track_length_m.toFixed(1)}`;
 }
 
-export async function playMode(mode: Extract<Mode, { name: 'replay' }>): Promise<LogSource> {
-  const recordings = await openRecordings(mode);
+/** Plays the first of the recordings that the program serves, or that were dropped on the page. */
+export async function playFirst(from: ServedLogs | readonly File[]): Promise<LogSource> {
+  const recordings = await ('logs' in from ? openRecordings(from) : openFiles(from));
   void readRuns(recordings);
   return play(recordings);
 }
 
-export async function playFiles(files: readonly File[]): Promise<LogSource> {
-  const recordings = await openFiles(files);
-  void readRuns(recordings);
-  return play(recordings);
-}
-
+/** Runs of all recordings, where there are several. */
 const others = store.data('page', () => ({ runs: [] as readonly LoggedRun[] }));
 
 /** Reads the laps of several recordings, one after another. */
@@ -127,13 +125,14 @@ async function readRuns({ logs: all }: Recordings): Promise<void> {
   }
 }
 
-/** The laps of the recordings that are not played are there to be compared. */
+/** Offers the laps of the recordings that are not played for comparison. */
 function offerOthers(): void {
   removeOtherLaps();
   const log = logs.value[played.value];
   offerLaps(others.runs.filter(({ recording }) => recording !== log?.name));
 }
 
+/** Ends the sampling of the recording that was played before. */
 const sampling = store.data('page', () => ({ end: (): void => undefined }));
 
 /** Samples all laps of the run that is shown. */

@@ -1,3 +1,4 @@
+// Bytes of a recording by ranges, from memory or from a server.
 import type { McapTypes } from '@mcap/core';
 
 type IReadable = McapTypes.IReadable;
@@ -21,8 +22,8 @@ export class BytesReadable implements IReadable {
   }
 }
 
-const BLOCK = 1 << 20; // fetched at once [bytes]
-const KEPT = 48; // blocks in memory
+const BLOCK = 1 << 20; // fetched at once [byte]; chosen
+const KEPT = 48; // blocks in memory; chosen
 
 /** A recording on a server with range requests, read in blocks; the last ones are cached. */
 export class HttpReadable implements IReadable {

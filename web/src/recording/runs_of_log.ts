@@ -11,7 +11,7 @@ export interface LoggedRun {
   readonly samples: LapSamples;
 }
 
-/** Runs of a recording: another one begins where time goes back, or track, car or controller change. */
+/** Runs of a recording: another one begins where time goes back, or a run is described anew. */
 export async function runsOf(log: McapLog): Promise<LoggedRun[]> {
   const runs: Omit<LoggedRun, 'name' | 'recording'>[] = [];
   let last: Frame | null = null;

@@ -1,3 +1,4 @@
+// Time line of a recording: position, landmarks, and the choice of recording and run.
 import { lapTime } from '../lib/format';
 import { reasonOf } from '../lib/words';
 import { Button, Select } from '../parts/controls';
@@ -6,17 +7,19 @@ import { attach } from '../state/operate';
 import type { Landmark } from './log_source';
 import { beside, duration, landmarks, logs, play, played, player, position, searched, showBeside } from './player';
 
+/** Jumps to a time [s]. */
 const seek = (time: number): void =>
   void player.value?.seek(time).catch((error: unknown) => (notice.value = reasonOf(error)));
 
 /** The next landmark in a direction, from a time [s]. */
 export function neighbour(all: readonly Landmark[], time: number, direction: 1 | -1): Landmark | null {
-  const margin = 0.05; // skips the landmark at the present position [s]
+  const margin = 0.05; // skips the landmark at the present position [s]; chosen
   const onward =
     direction > 0 ? all.filter((each) => each.time > time + margin) : all.filter((each) => each.time < time - margin);
   return (direction > 0 ? onward[0] : onward.at(-1)) ?? null;
 }
 
+/** Plays another recording from the same position. */
 export async function choose(which: number): Promise<void> {
   try {
     attach(await play({ logs: logs.value, start: position.value }, which, position.value));
@@ -38,6 +41,7 @@ function Jump({ direction }: { direction: 1 | -1 }) {
   );
 }
 
+/** Landmarks above the slider. */
 function Marks() {
   const length = duration.value;
   return (

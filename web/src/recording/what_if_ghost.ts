@@ -1,3 +1,5 @@
+// Futures of Drive both in the picture: the second one as a ghost beside the car, or beside the first one when both are
+// watched.
 import { effect } from '@preact/signals';
 import { complete } from '../protocol/topics';
 import { RecordedDrive } from '../scene3d/ghost';
@@ -7,12 +9,10 @@ import { type Moment, showAgain } from '../state/replay';
 import { answer } from '../state/what_if';
 import type { Trace, WhatIfAnswer } from '../state/what_if_answer';
 
-// The second future as a ghost on the picture: beside the car while the run comes to the same moments, and beside the
-// first future when both are watched.
-
+/** A value of a trace. */
 const column = (trace: Trace, name: keyof Trace, row: number): number => trace[name][row] ?? NaN;
 
-/** The second future by the time of the run. */
+/** The second future as a drive by the time of the run. */
 const ghostOf = ({ trace }: WhatIfAnswer['branch']): RecordedDrive =>
   new RecordedDrive('what if', trace, Infinity, () => live.frame?.time_s ?? NaN);
 

@@ -1,9 +1,12 @@
+// Cameras of the 3D picture: chase, top, cockpit and free, with smoothing from picture to picture.
 import type { Line } from '../draw/line';
 import { clamp, mix, wrapAngle } from '../lib/math';
 import type { Vector } from './mesh';
 
+/** Cameras of the 3D picture. */
 export type CameraName = 'chase' | 'top' | 'cockpit' | 'free';
 
+/** The cameras as they are offered. */
 export const CAMERAS: readonly { value: CameraName; label: string; title: string }[] = [
   { value: 'chase', label: 'Chase', title: 'From behind the car' },
   { value: 'top', label: 'Top', title: 'From above, looking ahead' },
@@ -36,24 +39,27 @@ export interface Orbit {
   zoom: number; // distance factor: 1 is the default
 }
 
+/** The free camera at first; chosen. */
 export const DEFAULT_ORBIT: Orbit = { azimuth: 0.75, elevation: 0.3, zoom: 1 };
 
+/** The orbit turned by angles [rad], above the ground and below the zenith. */
 export const orbited = (orbit: Orbit, azimuth: number, elevation: number): Orbit => ({
   ...orbit,
   azimuth: wrapAngle(orbit.azimuth + azimuth),
   elevation: clamp(orbit.elevation + elevation, 0.04, 1.5),
 });
 
+/** The orbit with its distance multiplied, within bounds that keep the car in sight. */
 export const zoomedOrbit = (orbit: Orbit, factor: number): Orbit => ({
   ...orbit,
   zoom: clamp(orbit.zoom * factor, 0.3, 6),
 });
 
-/** The vertical field of view, wider on tall screens so that the width is kept. */
+/** The vertical field of view [rad]: that of a wide picture, more on tall ones so that the width is kept. */
 const lens = (wide: number, aspect: number): number =>
   aspect >= 1.2 ? wide : 2 * Math.atan(Math.tan(wide / 2) * Math.min(1.7, 1.2 / aspect));
 
-/** What a picture has to hold. */
+/** Shape and content of a picture, which decide where a camera stands. */
 export interface Lens {
   readonly aspect: number; // width by height
   /** The points of the plan, in W [m]: the views from behind and from above hold all of them. */
@@ -62,17 +68,23 @@ export interface Lens {
   readonly isCut: boolean; // no gliding, for readers who prefer reduced motion
 }
 
-/** A place of the camera behind the car: turned about it [rad], and so many times as far. */
+/** A place of the camera behind the car: turned about the car [rad], at a multiple of the usual distance. */
 interface Stand {
   readonly turn: number;
   readonly far: number;
 }
 
+/** The usual stand, straight behind the car. */
 const STRAIGHT: Stand = { turn: 0, far: 1 };
-const MARGIN = 0.84; // of half the picture's width, in which the plan stays
-const TOP_MARGIN = 0.65; // of half its height, from above: the camera's name stands in the corner
+/** Shares of half the picture's width, and from above of half its height, in which the plan stays; chosen. */
+const MARGIN = 0.84;
+const TOP_MARGIN = 0.65; // less: the camera's name stands in the corner
+/** Multiples of the usual distance that are tried behind the car, and that distance in lengths of the car; chosen. */
 const FAR = [1, 1.3, 1.7, 2.2, 3];
-const BACK = 1.62; // of the car's length
+const BACK = 1.62;
+/** Time constants of the smoothed heading, from above and otherwise, and of the smoothed speed [s]; chosen. */
+const TURN_S = { top: 0.35, other: 0.22 } as const;
+const SPEED_S = 0.6;
 
 /** The way from one stand to another, by a share of it. */
 const between = (from: Stand, to: Stand, share: number): Stand => ({
@@ -84,9 +96,9 @@ const between = (from: Stand, to: Stand, share: number): Stand => ({
  * Follows the car; heading and speed are smoothed, so that the view turns with corners and not with every bump.
  */
 export class CameraMan {
-  #heading = NaN;
-  #speed = NaN;
-  #stand = STRAIGHT;
+  #heading = NaN; // smoothed [rad]; not-a-number: the next view is a cut
+  #speed = NaN; // smoothed [m/s]
+  #stand = STRAIGHT; // behind the car, in the last view
 
   /** The next view is a cut: no smoothing from the previous one. */
   cut(): void {
@@ -96,16 +108,17 @@ export class CameraMan {
   /** The view `seconds` after the last one. */
   shoot(name: CameraName, car: Subject, lens: Lens, seconds: number): Shot {
     const isFirst = Number.isNaN(this.#heading);
-    const share = isFirst || lens.isCut ? 1 : 1 - Math.exp(-seconds / (name === 'top' ? 0.35 : 0.22));
+    const share = isFirst || lens.isCut ? 1 : 1 - Math.exp(-seconds / TURN_S[name === 'top' ? 'top' : 'other']);
     const from = isFirst ? car.yaw : this.#heading;
     this.#heading = wrapAngle(from + wrapAngle(car.yaw - from) * share);
     const before = Number.isNaN(this.#speed) ? car.speed : this.#speed;
-    this.#speed = mix(before, car.speed, 1 - Math.exp(-seconds / 0.6));
+    this.#speed = mix(before, car.speed, 1 - Math.exp(-seconds / SPEED_S));
     if (name === 'chase') return this.#chase(car, lens, share);
     if (name === 'top') return this.#top(car, lens);
     return name === 'cockpit' ? this.#cockpit(car, lens) : this.#free(car, lens);
   }
 
+  /** From behind the car; aside or farther away where the plan would leave the picture. */
   #chase(car: Subject, { aspect, plan, orbit: { zoom }, isCut }: Lens, share: number): Shot {
     const widening = isCut ? 0 : 0.14 * clamp(this.#speed / 50, 0, 1);
     const fieldOfView = lens(0.92 + widening, aspect);
@@ -147,6 +160,7 @@ export class CameraMan {
     return { turn: off, far: FAR.at(-1) ?? 1 };
   }
 
+  /** From above, as high as the plan needs, with the car below the middle. */
   #top(car: Subject, { aspect, plan, orbit: { zoom } }: Lens): Shot {
     const [cos, sin] = [Math.cos(this.#heading), Math.sin(this.#heading)];
     const fieldOfView = lens(0.75, aspect);
@@ -169,6 +183,7 @@ export class CameraMan {
     };
   }
 
+  /** From the driver's eyes, fixed to the car. */
   #cockpit(car: Subject, { aspect, orbit: { zoom } }: Lens): Shot {
     const [cos, sin] = [Math.cos(car.yaw), Math.sin(car.yaw)];
     const place = (x: number, y: number, z: number): Vector => [
@@ -185,6 +200,7 @@ export class CameraMan {
     };
   }
 
+  /** Round the car, as the user has set it. */
   #free(car: Subject, { aspect, orbit: { azimuth, elevation, zoom } }: Lens): Shot {
     const angle = this.#heading + Math.PI + azimuth;
     const distance = 2.1 * car.length * zoom;

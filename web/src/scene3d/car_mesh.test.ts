@@ -2,14 +2,12 @@ import { describe, expect, it } from 'vitest';
 import { carModel } from './car_mesh';
 import type { MeshData } from './mesh';
 
-const SIZE = {
-  front_axle_m: 1.25,
-  rear_axle_m: 1.45,
-  track_width_m: 1.6,
-  tire_width_m: 0.205,
-  body_length_m: 4.3,
-  body_width_m: 1.8,
-};
+/** Dimensions of a car [m]: to the axles, between its wheels, of a tyre, and of the body. */
+const sizeOf = (front: number, rear: number, track: number, tyre: number, length: number, width: number) => ({
+  ...{ front_axle_m: front, rear_axle_m: rear, track_width_m: track, tire_width_m: tyre },
+  ...{ body_length_m: length, body_width_m: width },
+});
+const SIZE = sizeOf(1.25, 1.45, 1.6, 0.205, 4.3, 1.8);
 const model = carModel(SIZE);
 
 function corners({ positions }: MeshData): number[][] {
@@ -55,14 +53,7 @@ describe('the car', () => {
   });
 
   it('can be small', () => {
-    const toy = carModel({
-      front_axle_m: 0.16,
-      rear_axle_m: 0.16,
-      track_width_m: 0.2,
-      tire_width_m: 0.03,
-      body_length_m: 0.5,
-      body_width_m: 0.27,
-    });
+    const toy = carModel(sizeOf(0.16, 0.16, 0.2, 0.03, 0.5, 0.27));
     expect(toy.wheelRadius).toBeLessThan(0.06);
     expect(Math.max(...corners(toy.paint).map(([, , z]) => z ?? NaN))).toBeLessThan(0.15);
   });
@@ -97,18 +88,10 @@ describe('bodies', () => {
 });
 
 describe('cars with a roof', () => {
-  const VAN_SIZE = {
-    front_axle_m: 1.15,
-    rear_axle_m: 1.31,
-    track_width_m: 1.559,
-    tire_width_m: 0.185,
-    body_length_m: 4.569,
-    body_width_m: 1.844,
-  };
   const cars = {
     'road-car': SIZE,
     'bmw-320i': { ...SIZE, body_width_m: 1.61, track_width_m: 1.375 },
-    'vw-vanagon': VAN_SIZE,
+    'vw-vanagon': sizeOf(1.15, 1.31, 1.559, 0.185, 4.569, 1.844),
   };
   for (const [car, size] of Object.entries(cars)) {
     it(`${car} is as long, wide and high as such a car, and closed`, () => {

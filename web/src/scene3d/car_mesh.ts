@@ -1,3 +1,4 @@
+// Meshes of a car: a body by its name, drawn in the dimensions of the car.
 import type { CarSize } from '../draw/car';
 import { addClosedBody, COUPE, type Profile, SALOON, VAN } from './closed_body';
 import { type Colour, MeshBuilder, type MeshData, mirroredRing, onSide, plate, type Vector } from './mesh';
@@ -20,6 +21,7 @@ export interface CarModel {
   readonly width: number;
 }
 
+/** Half of a section across the car: y and z from bottom to top. */
 type Half = readonly (readonly [number, number])[];
 
 /** Half of a section with cut corners: `half` wide, from `low` to `high`. */
@@ -33,6 +35,7 @@ function section(half: number, low: number, high: number, cut = 0.35): Half {
   ];
 }
 
+/** A wheel about its hub: tyre, rim and ten spokes. */
 function wheelMesh(radius: number, width: number): MeshData {
   const mesh = new MeshBuilder();
   const SIDES = 24;
@@ -121,6 +124,7 @@ function helmetMesh(centre: Vector, radius: number): MeshData {
   return mesh.data();
 }
 
+/** The dimensions of a car that its parts are built from. */
 function measure(size: CarSize, isClosed: boolean): Measures {
   const wheelbase = size.front_axle_m + size.rear_axle_m;
   const length = Math.max(size.body_length_m, wheelbase * 1.15);
@@ -139,7 +143,7 @@ function measure(size: CarSize, isClosed: boolean): Measures {
   return { k, front, rear, nose, tail, radius, tyre, halfTrack, halfWidth, inner, tub, pod, length, at };
 }
 
-/** From the tail over the engine and the seat to the nose, with windscreen and hoop. */
+/** Adds the body of a single-seater from tail to nose, with seat, hoop and windscreen. */
 function addTub({ paint, dark }: Parts, { k, front, rear, nose, tail, tub, at }: Measures): void {
   const stations: readonly (readonly [x: number, half: number, low: number, high: number])[] = [
     [tail + 0.12 * k, 0.16 * k, 0.3 * k, 0.46 * k],
@@ -194,7 +198,7 @@ function addTub({ paint, dark }: Parts, { k, front, rear, nose, tail, tub, at }:
   );
 }
 
-/** Side pods with their intakes, mirrors, and the floor. */
+/** Adds side pods with their intakes, mirrors, and the floor. */
 function addPods({ paint, dark }: Parts, { k, inner, tub, pod, at }: Measures): void {
   for (const side of [-1, 1]) {
     const ring = (x: number, from: number, to: number, low: number, high: number) =>
@@ -231,7 +235,7 @@ function addPods({ paint, dark }: Parts, { k, inner, tub, pod, at }: Measures): 
   dark.box([at(-0.1), -inner, 0.1 * k], [at(0.1), inner, 0.14 * k], CARBON);
 }
 
-/** Front wing in two planes with end plates, rear wing on its plates, and the lamps. */
+/** Adds the front wing in two planes with end plates, the rear wing on its plates, and the lamps. */
 function addWings({ paint, dark, lamps, headlamps }: Parts, { k, rear, nose, tail, halfWidth, inner }: Measures): void {
   const wing = halfWidth - 0.02 * k;
   const slanted = (x0: number, x1: number, z0: number, z1: number, half: number): Vector[][] => [
@@ -262,7 +266,7 @@ function addWings({ paint, dark, lamps, headlamps }: Parts, { k, rear, nose, tai
   }
 }
 
-/** Wishbones from the tub to the hubs. */
+/** Adds wishbones from the tub to the hubs. */
 function addWishbones({ dark }: Parts, { k, front, rear, radius, tyre, halfTrack, tub }: Measures): void {
   for (const side of [-1, 1]) {
     const y = side * (halfTrack - tyre / 2);
@@ -278,7 +282,7 @@ function addWishbones({ dark }: Parts, { k, front, rear, radius, tyre, halfTrack
   }
 }
 
-/** What an Indy car has beside other single-seaters: the screen round its driver, and a fin along its engine. */
+/** Adds what only an Indy car has: the screen round its driver, and a fin along its engine. */
 function addScreenAndFin({ paint, dark }: Parts, { k, rear, tub, at }: Measures): void {
   const frame = 0.05 * k;
   for (const side of [-1, 1]) {
@@ -292,6 +296,7 @@ function addScreenAndFin({ paint, dark }: Parts, { k, rear, tub, at }: Measures)
   paint.loft([fin(rear - 0.1 * k, 0.56, 0.86), fin(at(0.16), 0.7, 1.02), fin(at(0.3), 0.84, 1.03)], ACCENT);
 }
 
+/** Kind of a body; a profile is one with a roof. */
 type Body = 'formula' | 'indy' | 'model' | Profile;
 
 /** The shape of each shipped car. */
@@ -305,13 +310,14 @@ const BODIES: Readonly<Record<string, Body>> = {
   indy: 'indy',
   f1tenth: 'model',
 };
-/** Cars of other names that are shorter are model cars [m]. */
+/** Length below which a car of another name is a model car [m]; chosen. */
 const SMALL_M = 1;
 
+/** Body of a car by its name, else by its length. */
 const bodyOf = ({ car = '', body_length_m: length }: CarLooks): Body =>
   BODIES[car] ?? (length < SMALL_M ? 'model' : 'formula');
 
-/** What the shape of a car follows from. */
+/** Dimensions and name of a car, from which its shape follows. */
 export type CarLooks = CarSize & { readonly car?: string };
 
 /**

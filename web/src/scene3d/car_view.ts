@@ -1,3 +1,4 @@
+// The driven car and the ghost car in the scene: materials, wheels, lamps and shadow.
 import {
   AdditiveBlending,
   Box3,
@@ -82,6 +83,7 @@ function softTexture(grey: number, strength: (u: number, v: number) => number): 
   return texture;
 }
 
+/** Smooth step from 0 to 1. */
 const soft = (edge: number): number => Math.max(0, Math.min(1, edge)) ** 2 * (3 - 2 * Math.max(0, Math.min(1, edge)));
 
 /** The ambient shadow under the car. */
@@ -144,7 +146,7 @@ export class CarView {
     scene.add(this.group);
   }
 
-  /** Of a box round the car along its own axes, in W [m]. */
+  /** Corners of a box round the car along its own axes, in W [m]. */
   corners(): (readonly [number, number, number])[] {
     const box = new Box3();
     for (const part of this.#body.children) {
@@ -160,11 +162,13 @@ export class CarView {
     return places.map((place) => this.group.localToWorld(new Vector3(...place)).toArray());
   }
 
+  /** Notes a thing to be disposed of with the car. */
   #keep<T extends { dispose(): void }>(thing: T): T {
     this.#garbage.push(thing);
     return thing;
   }
 
+  /** The light of the headlamps on the road, seen at dusk. */
   #headlight(): Mesh {
     const [ahead, wide] = [8 * this.model.length, 3.2 * this.model.length];
     const material = this.#keep(
@@ -188,6 +192,7 @@ export class CarView {
     return mesh;
   }
 
+  /** The soft shadow under the car, which is there without a sun. */
   #spot(): Mesh {
     const { length, width } = this.model;
     const material = this.#keep(
@@ -199,6 +204,7 @@ export class CarView {
     return spot;
   }
 
+  /** A plane on the ground that shows the shadow of the sun. */
   #shadowCatcher(): Mesh {
     const catcher = new Mesh(this.#keep(new PlaneGeometry(this.model.length * 3, this.model.length * 3)), this.#shadow);
     catcher.receiveShadow = true;

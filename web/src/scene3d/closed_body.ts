@@ -1,3 +1,4 @@
+import { clamp, firstSince } from '../lib/math';
 import { type Colour, mirroredRing, onSide, plate, type Vector } from './mesh';
 import { ACCENT, GLASS, LAMP, LIGHT, type Measures, type Parts, RUBBER, WHITE } from './parts';
 
@@ -8,7 +9,7 @@ import { ACCENT, GLASS, LAMP, LIGHT, type Measures, type Parts, RUBBER, WHITE } 
 export interface Profile {
   readonly usualLength: number; // [m]
   /** The upper edge of the body, which the glass stands on. */
-  readonly belt: readonly (readonly [along: number, height: number])[];
+  readonly belt: { readonly along: readonly number[]; readonly height: readonly number[] };
   /** The glass: where it begins and ends at the belt, and where the roof does. */
   readonly glass: readonly [tail: number, roofTail: number, roofNose: number, nose: number];
   readonly roof: number;
@@ -21,17 +22,10 @@ export interface Profile {
   readonly wing?: number;
 }
 
+/** A car of four doors. */
 export const SALOON: Profile = {
   usualLength: 4.3,
-  belt: [
-    [0, 0.86],
-    [0.04, 0.96],
-    [0.18, 0.98],
-    [0.68, 0.94],
-    [0.9, 0.8],
-    [0.98, 0.68],
-    [1, 0.56],
-  ],
+  belt: { along: [0, 0.04, 0.18, 0.68, 0.9, 0.98, 1], height: [0.86, 0.96, 0.98, 0.94, 0.8, 0.68, 0.56] },
   glass: [0.13, 0.3, 0.5, 0.68],
   roof: 1.4,
   sill: 0.2,
@@ -41,15 +35,10 @@ export const SALOON: Profile = {
   eye: { along: 0.5, height: 1.16 },
 };
 
+/** A van, high and with a steep front. */
 export const VAN: Profile = {
   usualLength: 4.57,
-  belt: [
-    [0, 1.06],
-    [0.5, 1.08],
-    [0.96, 1.06],
-    [0.985, 0.9],
-    [1, 0.6],
-  ],
+  belt: { along: [0, 0.5, 0.96, 0.985, 1], height: [1.06, 1.08, 1.06, 0.9, 0.6] },
   glass: [0.01, 0.05, 0.83, 0.965],
   roof: 1.94,
   sill: 0.26,
@@ -62,15 +51,7 @@ export const VAN: Profile = {
 /** Low, with a long nose, a roof that falls to the tail, and a wing. */
 export const COUPE: Profile = {
   usualLength: 4.4,
-  belt: [
-    [0, 0.72],
-    [0.03, 0.86],
-    [0.2, 0.9],
-    [0.62, 0.84],
-    [0.85, 0.74],
-    [0.97, 0.58],
-    [1, 0.46],
-  ],
+  belt: { along: [0, 0.03, 0.2, 0.62, 0.85, 0.97, 1], height: [0.72, 0.86, 0.9, 0.84, 0.74, 0.58, 0.46] },
   glass: [0.06, 0.36, 0.48, 0.66],
   roof: 1.2,
   sill: 0.16,
@@ -81,20 +62,19 @@ export const COUPE: Profile = {
   wing: 1.06,
 };
 
-const mixed = (table: Profile['belt'], along: number): number => {
-  const next = Math.max(
-    1,
-    table.findIndex(([at]) => at >= along),
-  );
-  const [[a, low], [b, high]] = [table[next - 1] ?? [0, 0], table[next] ?? [1, 0]];
-  return low + ((high - low) * Math.min(1, Math.max(0, along - a))) / (b - a || 1);
-};
+/** Height of the belt at a place along the car, linear between its points. */
+function beltAt({ along, height }: Profile['belt'], place: number): number {
+  const next = Math.max(1, firstSince(along, place));
+  const [a, b] = [along[next - 1] ?? 0, along[next] ?? 1];
+  const [low, high] = [height[next - 1] ?? 0, height[next] ?? 0];
+  return low + ((high - low) * clamp(place - a, 0, 1)) / (b - a || 1);
+}
 
-/** Where the body is cut along the car [m], and the lower edge there: the sill, or the arch over a wheel. */
+/** Sections along the car [m], and the lower edge of the body in each: the sill, or the arch over a wheel. */
 function edgesOf(measures: Measures, profile: Profile, k: number): { x: number; low: number }[] {
   const { front, rear, nose, tail, radius } = measures;
   const [arch, sill] = [1.14 * radius, profile.sill * k];
-  const edges = profile.belt.map(([along]) => ({ x: tail + along * (nose - tail), low: sill }));
+  const edges = profile.belt.along.map((along) => ({ x: tail + along * (nose - tail), low: sill }));
   for (const axle of [front, rear])
     for (const share of [-1, -0.92, -0.7, -0.35, 0, 0.35, 0.7, 0.92, 1]) {
       const height = radius + arch * Math.sqrt(Math.max(0, 1 - share * share));
@@ -107,7 +87,7 @@ function edgesOf(measures: Measures, profile: Profile, k: number): { x: number; 
     .sort((a, b) => a.x - b.x || a.low - b.low);
 }
 
-/** The body of a profile; returns where the driver looks from, and the steering wheel's centre. */
+/** Adds the body of a profile; returns the driver's eyes and the centre of the steering wheel. */
 export function addClosedBody(
   { paint, dark, lamps, headlamps }: Parts,
   measures: Measures,
@@ -116,7 +96,7 @@ export function addClosedBody(
   const { nose, tail, halfWidth, halfTrack, tyre, length } = measures;
   const k = length / profile.usualLength;
   const place = (along: number): number => tail + along * (nose - tail);
-  const height = (x: number): number => k * mixed(profile.belt, (x - tail) / (nose - tail));
+  const height = (x: number): number => k * beltAt(profile.belt, (x - tail) / (nose - tail));
   const half = halfWidth;
   const inner = Math.min(halfTrack - tyre / 2 - 0.04 * k, 0.82 * half);
   const edges = edgesOf(measures, profile, k);

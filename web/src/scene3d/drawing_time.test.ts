@@ -49,12 +49,4 @@ describe('drawing time', () => {
     expect([time.isDrawn(8000), time.isFree(8000)]).toEqual([true, false]);
     expect(time.isFree(8250)).toBe(true);
   });
-
-  it('asks again soon where pictures are drawn soon', () => {
-    const [drawer, time] = pair();
-    time.begin(0);
-    drawer.isDone = true;
-    expect([time.isDrawn(16), time.isFree(16)]).toEqual([true, false]);
-    expect(time.isFree(25)).toBe(true);
-  });
 });

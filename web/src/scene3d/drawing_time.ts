@@ -4,9 +4,9 @@ export type Fences = Pick<
   'fenceSync' | 'deleteSync' | 'getSyncParameter' | 'flush' | 'SYNC_GPU_COMMANDS_COMPLETE' | 'SYNC_STATUS' | 'SIGNALED'
 >;
 
-/** Largest share of the time that drawing may take. */
+/** Largest share of the time that drawing may take; chosen. */
 const SHARE = 2 / 3;
-/** Longest pause between pictures [ms]: the first one takes seconds, in which shaders are compiled. */
+/** Longest pause between pictures [ms]: the first one takes seconds, in which shaders are compiled; chosen. */
 const LONGEST_REST = 250;
 
 /**

@@ -1,6 +1,8 @@
+// Geometry of three.js from a mesh.
 import { BufferAttribute, BufferGeometry } from 'three';
 import type { MeshData } from './mesh';
 
+/** Positions, normals and colours of a mesh. */
 export function geometryOf(data: MeshData): BufferGeometry {
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(data.positions, 3));

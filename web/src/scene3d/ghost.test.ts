@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { Pose } from '../lib/poses';
-import type { Frame } from '../protocol/topics';
+import { frameWith } from '../state/test_messages';
 import { LapRecorder, RecordedDrive } from './ghost';
 
 const PERIOD = 0.05;
@@ -13,18 +13,10 @@ function drive(recorder: LapRecorder, times: readonly number[], { begin = 0, sta
     if (lap === offTrackIn) ++events;
     for (let t = lap === 0 ? start : 0; t < lapTime - 1e-9; t += PERIOD) {
       const angle = (2 * Math.PI * t) / lapTime;
-      const frame = {
-        time_s: time,
-        lap,
-        lap_time_s: t,
-        last_lap_time_s: lap > 0 ? (times[lap - 1] ?? NaN) : NaN,
-        x_m: 50 * Math.cos(angle),
-        y_m: 50 * Math.sin(angle),
-        yaw_rad: angle + Math.PI / 2,
-        steer_applied_rad: 0.05,
-        off_track_events: lap === offTrackIn && t > 1 ? events : lap > offTrackIn ? events : 0,
-      };
-      recorder.push(frame as Frame);
+      const ofLap = { lap, lap_time_s: t, last_lap_time_s: times[lap - 1] ?? NaN };
+      const at = { x_m: 50 * Math.cos(angle), y_m: 50 * Math.sin(angle), yaw_rad: angle + Math.PI / 2 };
+      const isOver = lap > offTrackIn || (lap === offTrackIn && t > 1);
+      recorder.push(frameWith({ time_s: time, ...ofLap, ...at, off_track_events: isOver ? events : 0 }));
       time += PERIOD;
     }
   });

@@ -1,3 +1,4 @@
+// Ghost cars: drives that are shown beside the car, and the recorder of the best lap.
 import { lapTime } from '../lib/format';
 import { clamp } from '../lib/math';
 import { paintSize } from '../lib/paint_size';
@@ -21,7 +22,7 @@ export interface GhostSource {
 }
 
 const CAPACITY = 30_000; // rows: 10 minutes at 50 frames a second
-const LINE_SPACING_M = { lap: 1, drive: 2 } as const;
+const LINE_SPACING_M = { lap: 1, drive: 2 } as const; // of the drawn path; chosen
 
 /** A drive that was recorded: by the time of the lap, or, where it has a clock, by that. */
 export class RecordedDrive implements GhostSource {
@@ -59,6 +60,7 @@ export const posesOf = (frames: readonly { readonly time: number; readonly frame
   steer_rad: frames.map(({ frame }) => frame.steer_applied_rad),
 });
 
+/** Columns that are recorded of a lap. */
 const POSE_COLUMNS = ['time_s', 'x_m', 'y_m', 'yaw_rad', 'steer_rad'] as const;
 
 /** Records frames and keeps the best complete lap, in fixed memory. Laps that left the road are not kept. */

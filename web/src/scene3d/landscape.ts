@@ -1,3 +1,4 @@
+// Sky, hills, ground and trees of the 3D picture.
 import {
   BackSide,
   BufferGeometry,
@@ -25,11 +26,12 @@ import { noiseTile } from './noise';
 import type { Palette } from './palette';
 import type { Tree } from './trees';
 
-/** Drawn from far to near without writing depth, so that nothing flickers. */
+/** Order of drawing, from far to near without writing depth, so that nothing flickers. */
 export const Order = { sky: -100, hills: -90, ground: -80, verge: -70, kerbs: -60, surface: -50, lines: -40 } as const;
 
+/** Sizes of the ground, of a cell of its grid, of the view up to the end of the fog, and of a tile of trees; chosen. */
 const GROUND_M = 2400;
-const TILE_M = 20; // of the ground's texture: one cell of the grid
+const TILE_M = 20;
 const FAR_M = 900;
 const FOREST_TILE_M = 90;
 
@@ -53,6 +55,7 @@ export function greyTexture(values: Float32Array, size: number, anisotropy: numb
 /** A material's colour such that a grey texture of mean 200/255 leaves `colour`. */
 export const underTexture = (colour: Colour): Color => new Color().setRGB(...colour).multiplyScalar(255 / 200);
 
+/** A colour between two others. */
 const mixed = (a: Colour, b: Colour, share: number): Colour => [
   mix(a[0], b[0], share),
   mix(a[1], b[1], share),
@@ -140,6 +143,7 @@ export class Landscape {
     for (const tile of tiles.values()) this.#forest.add(new Mesh(geometryOf(tile.data()), this.#bark));
   }
 
+  /** Removes all trees. */
   #fell(): void {
     for (const mesh of this.#forest.children as Mesh[]) mesh.geometry.dispose();
     this.#forest.clear();
@@ -157,7 +161,7 @@ export class Landscape {
   }
 }
 
-/** A trunk and two cones, without hidden faces. */
+/** Adds a tree: a trunk and two cones, without hidden faces. */
 function addTree(mesh: MeshBuilder, { x, y, height, width, kind }: Tree, colours: Palette): void {
   const cone = (sides: number, low: number, high: number, radius: number, top: number, colour: Colour): void => {
     const point = (k: number, r: number, z: number): Vector => {

@@ -1,5 +1,6 @@
 import { describe, expect, it } from 'vitest';
-import type { Motion } from './motion';
+import { frameWith } from '../state/test_messages';
+import { type Motion, motionOf } from './motion';
 import { RibbonRing, ribbonIndices, writeRibbon } from './ribbon';
 import { markStrength, TyreMarks } from './tyre_marks';
 
@@ -50,24 +51,9 @@ describe('a band along a line', () => {
 
 describe('tyre marks', () => {
   const car = { front: 1.2, rear: 1.5, halfTrack: 0.8, tyreWidth: 0.25, spacing: 0.35 };
+  const straight = { yaw_rad: 0, vx_mps: 20, vy_mps: 0, yaw_rate_radps: 0, speed_mps: 20, steer_applied_rad: 0 };
   const at = (x: number, rest: Partial<Motion>): Motion => ({
-    ...{
-      time: x / 20,
-      x,
-      y: 0,
-      yaw: 0,
-      vx: 20,
-      vy: 0,
-      yawRate: 0,
-      speed: 20,
-      steer: 0,
-      throttle: 0,
-      ax: 0,
-      ay: 0,
-      lapTime: 0,
-      frontUse: 0.5,
-      rearUse: 0.5,
-    },
+    ...motionOf(frameWith({ ...straight, x_m: x, front_tire_use: 0.5, rear_tire_use: 0.5 })),
     ...rest,
   });
 

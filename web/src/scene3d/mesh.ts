@@ -1,3 +1,5 @@
+// Builder of meshes from triangles, boxes, rods and lofted sections, in flat shading.
+
 /** A point or a direction: x, y, z [m], in W or in the axes of a car (x forward, y left, z up). */
 export type Vector = readonly [number, number, number];
 
@@ -45,6 +47,7 @@ export class MeshBuilder {
     }
   }
 
+  /** A flat face with four corners, as two triangles. */
   quad(a: Vector, b: Vector, c: Vector, d: Vector, colour: Colour): void {
     this.triangle(a, b, c, colour);
     this.triangle(a, c, d, colour);
@@ -83,6 +86,7 @@ export class MeshBuilder {
     this.#fan(last, paint(last[0]?.[0] ?? 0, -2));
   }
 
+  /** The end face of a closed surface. */
   #fan(ring: readonly Vector[], colour: Colour): void {
     for (let k = 1; k + 1 < ring.length; ++k) {
       const [a, b, c] = [ring[0], ring[k], ring[k + 1]];

@@ -4,7 +4,7 @@ import { ACCENT, CARBON, LAMP, LIGHT, METAL, type Measures, type Parts, SOOT, WH
 // A model car with its computer, as F1TENTH builds it: chassis, battery, a plate on posts with computer and laser
 // scanner, aerials, and a bumper of foam. Drawn in the units of a car of 4.5 m, as the others.
 
-/** An upright drum about (x, 0). */
+/** Adds an upright drum about (x, 0). */
 function drum(mesh: MeshBuilder, x: number, low: number, high: number, radius: number, colour = SOOT): void {
   const SIDES = 16;
   const at = (i: number, z: number): Vector => {
@@ -18,7 +18,7 @@ function drum(mesh: MeshBuilder, x: number, low: number, high: number, radius: n
   }
 }
 
-/** The body of a model car; returns where it looks from: its scanner. */
+/** Adds the body of a model car; returns the place of its scanner as that of the driver's eyes. */
 export function addModelCar(
   { paint, dark, lamps, headlamps }: Parts,
   { k, nose, tail, inner, halfWidth, at }: Measures,

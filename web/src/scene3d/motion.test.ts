@@ -1,25 +1,14 @@
 import { describe, expect, it } from 'vitest';
-import { interpolate, isJump, type Motion, Playout } from './motion';
+import { frameWith } from '../state/test_messages';
+import { interpolate, isJump, type Motion, motionOf, Playout } from './motion';
 
 /** A car on a circle of 50 m at 20 m/s, to the left. */
 function circling(time: number): Motion {
   const [radius, speed] = [50, 20];
   const angle = (speed / radius) * time;
-  const at = { x: radius * Math.cos(angle), y: radius * Math.sin(angle), yaw: angle + Math.PI / 2 };
-  const rest = {
-    vx: speed,
-    vy: 0,
-    yawRate: speed / radius,
-    speed,
-    steer: 0.05,
-    throttle: 0.2,
-    ax: 0,
-    ay: 8,
-    lapTime: time,
-    frontUse: NaN,
-    rearUse: NaN,
-  };
-  return { time, ...at, ...rest };
+  const at = { x_m: radius * Math.cos(angle), y_m: radius * Math.sin(angle), yaw_rad: angle + Math.PI / 2 };
+  const velocity = { vx_mps: speed, vy_mps: 0, yaw_rate_radps: speed / radius, speed_mps: speed };
+  return motionOf(frameWith({ time_s: time, lap_time_s: time, ...at, ...velocity }));
 }
 const far = (a: { x: number; y: number }, b: { x: number; y: number }): number => Math.hypot(a.x - b.x, a.y - b.y);
 

@@ -1,3 +1,4 @@
+// Smooth motion of the car from frames that arrive irregularly.
 import { clamp, extrapolate, wrapAngle } from '../lib/math';
 import type { Frame } from '../protocol/topics';
 
@@ -21,9 +22,11 @@ const FIELDS = {
 } as const;
 export type Motion = Record<keyof typeof FIELDS, number>;
 
+/** The motion of the car in a frame. */
 export const motionOf = (frame: Frame): Motion =>
   Object.fromEntries(Object.entries(FIELDS).map(([name, field]) => [name, frame[field]])) as Motion;
 
+/** The value; 0 where it is unknown. */
 const known = (value: number): number => (Number.isFinite(value) ? value : 0);
 const mix = (a: number, b: number, u: number): number => known(a) + (known(b) - known(a)) * u;
 
@@ -33,12 +36,14 @@ function hermite(a: number, p: number, b: number, q: number, span: number, u: nu
   return (2 * u3 - 3 * u2 + 1) * a + (u3 - 2 * u2 + u) * span * p + (3 * u2 - 2 * u3) * b + (u3 - u2) * span * q;
 }
 
+/** Velocity in W [m/s]. */
 const worldVelocity = (m: Motion): [number, number] => {
   const [cos, sin] = [Math.cos(m.yaw), Math.sin(m.yaw)];
   const [vx, vy] = [known(m.vx), known(m.vy)];
   return [vx * cos - vy * sin, vx * sin + vy * cos];
 };
 
+/** Values that are interpolated linearly. */
 const MIXED = ['vx', 'vy', 'yawRate', 'speed', 'steer', 'ax', 'ay'] as const;
 
 /** The motion at `time` in [a.time, b.time]: position and velocity agree with both. */
@@ -68,11 +73,19 @@ export function isJump(a: Motion, b: Motion): boolean {
   return !(Math.hypot(b.x - a.x, b.y - a.y) <= reach);
 }
 
+/** Frames that are kept; chosen: half a second of them. */
 const KEPT = 32;
+/** Longest delay of the picture behind the newest frame [ms]; chosen: it is not noticed. */
 const LONGEST_DELAY_MS = 50;
-const LONGEST_LEAD_S = 0.12; // run time shown beyond the newest frame
+/** Longest time of the run by which the newest frame is extrapolated [s]; chosen. */
+const LONGEST_LEAD_S = 0.12;
+/** Time constant with which the shown time approaches the intended one [s]; chosen. */
 const SLEW_S = 0.25;
-const BURST_MS = 2; // frames closer together than this, many in a row, are the past of the run
+/**
+ * A burst, that is, past frames that are sent at once: so many in a row, each within this time of the last [ms];
+ * chosen.
+ */
+const BURST_MS = 2;
 const BURST = 6;
 
 /**
@@ -110,6 +123,7 @@ export class Playout {
     ++this.jumps;
   }
 
+  /** Drops all frames; the next one is shown as it is. */
   #forget(): void {
     this.#frames = [];
     this.#arrivals = [];
@@ -155,6 +169,7 @@ export class Playout {
     return this.#sample(this.#shown, newest);
   }
 
+  /** The motion at a time of the run: between two frames, or extrapolated from the newest one. */
   #sample(time: number, newest: Motion): Motion {
     if (time >= newest.time) {
       const lead = Math.min(time - newest.time, LONGEST_LEAD_S);

@@ -1,3 +1,4 @@
+// Repeatable random numbers, and tiles of noise for textures.
 import { mod } from '../lib/math';
 
 /** Random numbers in [0, 1), equal for equal seeds: pictures of the same track are equal. */

@@ -1,7 +1,8 @@
+// Colours and lights of the 3D picture, by day and at dusk.
 import { scheme } from '../lib/appearance';
 import { colourOf } from './mesh';
 
-/** What is drawn on the road, as in tokens.css: it has the same colour by day and at dusk. */
+/** Colours of lines and cars on the road, as in tokens.css; the same by day and at dusk. */
 const LINES = {
   plan: colourOf('#ffcb3d'),
   predicted: colourOf('#8a7443'),
@@ -37,6 +38,7 @@ const DAY = {
   sky: 1.3, // the ambient light
 };
 
+/** The same colours at dusk. */
 const DUSK: typeof DAY = {
   zenith: colourOf('#0a101d'),
   horizon: colourOf('#3a4a63'),
@@ -60,6 +62,7 @@ const DUSK: typeof DAY = {
   sky: 1.0,
 };
 
+/** Colours and lights of a scheme. */
 export interface Palette extends Readonly<typeof DAY> {
   readonly isDark: boolean;
 }

@@ -1,5 +1,7 @@
+// Dimensions, colours and surfaces that the bodies of cars share.
 import { colourOf, type MeshBuilder } from './mesh';
 
+/** Colours of the parts of cars; chosen. */
 export const WHITE = colourOf('#f1f3f7');
 export const ACCENT = colourOf('#2158c9');
 export const CARBON = colourOf('#2a313a');

@@ -1,10 +1,14 @@
+// Mouse, touch and arrow keys that move the camera of the 3D picture.
 import { live } from '../state/live';
 import { orbited } from './cameras';
 import { camera, choose, orbit, zoomCamera } from './view_state';
 
-const TURN = 0.007; // [rad] for each pixel
-const KEY_TURN = 0.09; // [rad] for each press
+/** Turns of the camera for a pixel and for a press of a key [rad], and logarithm of its zoom for a pixel; chosen. */
+const TURN = 0.007;
+const KEY_TURN = 0.09;
+const ZOOM_PER_PIXEL = 0.0015;
 
+/** Turns of the arrow keys: azimuth and elevation [rad]. */
 const ARROWS: Readonly<Record<string, readonly [number, number]>> = {
   ArrowLeft: [KEY_TURN, 0],
   ArrowRight: [-KEY_TURN, 0],
@@ -50,7 +54,7 @@ export function listenToPointers(canvas: HTMLCanvasElement): () => void {
   const wheel = (event: WheelEvent): void => {
     if (event.ctrlKey) return; // the browser's own zoom
     event.preventDefault();
-    zoomCamera(Math.exp(event.deltaY * 0.0015));
+    zoomCamera(Math.exp(event.deltaY * ZOOM_PER_PIXEL));
   };
   const key = (event: KeyboardEvent): void => {
     const turn = ARROWS[event.key];

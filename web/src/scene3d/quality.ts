@@ -1,10 +1,13 @@
-/** Levels of quality, from expensive to cheap. */
+// Levels of quality of the 3D picture, and their choice by the time that pictures take.
+
+/** A level of quality. */
 export interface Quality {
   readonly pixelRatio: number; // pixels drawn for each CSS pixel, at most
   readonly hasShadow: boolean;
   readonly interval: number; // least time between pictures [ms]
 }
 
+/** Levels of quality, from expensive to cheap; chosen. */
 export const LEVELS: readonly Quality[] = [
   { pixelRatio: 2, hasShadow: true, interval: 0 },
   { pixelRatio: 1.5, hasShadow: true, interval: 0 },
@@ -15,22 +18,29 @@ export const LEVELS: readonly Quality[] = [
   { pixelRatio: 0.5, hasShadow: false, interval: 50 },
 ];
 
-/** First and highest level with software rendering. */
+/** Index of the first and most expensive level with software rendering. */
 export const SOFTWARE_LEVEL = 4;
 
-const WINDOW = 40; // pictures judged together; fewer where they take long
+/**
+ * Pictures that are judged together: WINDOW of them, or LEAST_WINDOW where those take longer than LONG_WINDOW_MS;
+ * chosen.
+ */
+const WINDOW = 40;
 const LONG_WINDOW_MS = 3000;
 const LEAST_WINDOW = 8;
-const LATE = 1.45; // times the intended interval
-const CALM_WINDOWS = 6; // consecutive good windows before the level is raised
+/** Multiples of the intended interval above which pictures are late, and below which they are on time; chosen. */
+const LATE = 1.45;
+const ON_TIME = 1.15;
+/** Consecutive windows on time before a more expensive level is tried; chosen. */
+const CALM_WINDOWS = 6;
 
 /** Chooses the highest level at which pictures are on time, from the measured time between them. */
 export class QualityGovernor {
   level: number;
-  readonly #best: number;
-  #gaps: number[] = [];
-  #calm = 0;
-  #patience = CALM_WINDOWS;
+  readonly #best: number; // level that is not exceeded
+  #gaps: number[] = []; // times of this window [ms]
+  #calm = 0; // consecutive windows on time
+  #patience = CALM_WINDOWS; // windows on time before the next level is tried
 
   constructor(isSoftware: boolean) {
     this.level = isSoftware ? SOFTWARE_LEVEL : 0;
@@ -60,7 +70,7 @@ export class QualityGovernor {
       ++this.level;
       return true;
     }
-    this.#calm = typical < 1.15 * meant ? this.#calm + 1 : 0;
+    this.#calm = typical < ON_TIME * meant ? this.#calm + 1 : 0;
     if (this.#calm < this.#patience || this.level <= this.#best) return false;
     this.#calm = 0;
     --this.level;

@@ -3,8 +3,10 @@ import { store } from '../lib/store';
 /** What renders 3D on this machine. */
 export type Renderer = 'card' | 'processor' | 'none';
 
+/** Names of renderers that run on the processor. */
 const BY_PROCESSOR = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 
+/** Asks a context of its own. */
 function ask(): Renderer {
   const context = document.createElement('canvas').getContext('webgl2');
   if (!context) return 'none';

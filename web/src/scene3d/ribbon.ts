@@ -1,3 +1,5 @@
+// Flat bands on the ground: a ring buffer of pieces, and a band along a line.
+
 /** The end of a band, where its next piece is joined. */
 interface End {
   readonly leftX: number;
@@ -87,7 +89,7 @@ export function writeRibbon(
   }
 }
 
-/** Triangles for a band of `count` pairs of corners, facing up. */
+/** Indices of the triangles of a band of `count` pairs of corners, facing up. */
 export function ribbonIndices(count: number): Uint32Array {
   const indices = new Uint32Array(Math.max(0, count - 1) * 6);
   for (let i = 0; i + 1 < count; ++i) indices.set([2 * i, 2 * i + 1, 2 * i + 3, 2 * i, 2 * i + 3, 2 * i + 2], 6 * i);

@@ -1,3 +1,4 @@
+// Bands on the ground in the scene of three.js.
 import { BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, Mesh, MeshBasicMaterial, type Scene } from 'three';
 import type { Line } from '../draw/line';
 import type { Colour } from './mesh';

@@ -1,5 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { Point } from '../lib/math';
+import { paintSize } from '../lib/paint_size';
 import type { RoadLines } from '../state/road';
 import { colourOf } from './mesh';
 import { curvatures, type FlatMesh, KERB_RADIUS_M, roadMeshes, tidyLines } from './road_mesh';
@@ -41,6 +42,11 @@ const mirror = (lines: RoadLines): RoadLines => {
   const flip = (points: readonly Point[]): Point[] => points.map(({ x, y }) => ({ x, y: -y }));
   return { left: flip(lines.right), right: flip(lines.left), centre: flip(lines.centre) };
 };
+/** A straight road of `half` m to each side. */
+function straight(half: number, length: number): RoadLines {
+  const at = (y: number): Point[] => Array.from({ length: 21 }, (_, i) => ({ x: (length * i) / 20, y }));
+  return { left: at(half), centre: at(0), right: at(-half) };
+}
 const polygon = (r: number, n: number): number => (n / 2) * r * r * Math.sin((2 * Math.PI) / n);
 
 describe('the road', () => {
@@ -108,6 +114,18 @@ describe('the road', () => {
     };
     expect(shades(KERB_RADIUS_M * 0.5).size).toBe(2);
     expect([...shades(KERB_RADIUS_M * 3)]).toEqual([new Float32Array(PAINT.concrete).join()]);
+  });
+
+  it('is painted in the size of the car, full size but for model cars', () => {
+    const lengths = [4.3, 2.9, 0.45, NaN]; // at 2.9 m a student's racing car, which drives on full-size roads
+    expect(lengths.map((body_length_m) => paintSize({ body_length_m }))).toEqual([1, 1, expect.closeTo(0.1, 9), 1]);
+    const small = roadMeshes(straight(0.5, 20), false, 0.1, PAINT, 0.1);
+    const full = roadMeshes(straight(5, 200), false, 1, PAINT);
+    for (const part of ['verge', 'kerbs', 'surface', 'lines'] as const) {
+      expect(small[part].positions.length).toBe(full[part].positions.length);
+      small[part].positions.forEach((value, i) => expect(value).toBeCloseTo((full[part].positions[i] ?? NaN) / 10, 4));
+    }
+    expect(Math.max(...small.surface.positions.filter((_, i) => i % 3 === 1))).toBeCloseTo(0.5, 6);
   });
 
   it('bends to the left positively, seam included', () => {

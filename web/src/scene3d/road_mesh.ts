@@ -1,3 +1,4 @@
+// Meshes of the road: surface, verge, kerbs, painted lines and the chequered start.
 import { lengthsOf, lineOf } from '../draw/line';
 import { mod, type Point } from '../lib/math';
 import type { RoadLines } from '../state/road';
@@ -15,12 +16,14 @@ export type RoadPaint = Palette['road'];
 
 const BLACK = colourOf('#15181d');
 
+/** Widths of the edge line and the verge, and length of a block of a kerb; chosen. */
 const EDGE_LINE_M = 0.16;
 const VERGE_M = 7;
 const KERB_BLOCK_M = 1.4;
-/** Tighter bends have kerbs in red and white; elsewhere the kerb is plain concrete. */
+/** Radius below which bends have kerbs in red and white [m]; elsewhere kerbs are plain concrete; chosen. */
 export const KERB_RADIUS_M = 130;
 
+/** Collects the triangles of a flat mesh. */
 class Flat {
   readonly positions: number[] = [];
   readonly colours: number[] = [];
@@ -71,7 +74,7 @@ export function tidyLines(lines: RoadLines, isClosed: boolean): RoadLines | null
   return { left: pick(lines.left), right: pick(lines.right), centre: pick(lines.centre) };
 }
 
-/** The band between two lines with equally many points, `left` on the left of `right`. */
+/** Adds the band between two lines with equally many points, `left` on the left of `right`. */
 function addBand(flat: Flat, left: readonly Point[], right: readonly Point[], colour: Colour): Flat {
   for (let i = 0; i + 1 < left.length; ++i)
     flat.quad(left[i] as Point, right[i] as Point, right[i + 1] as Point, left[i + 1] as Point, colour);
@@ -94,7 +97,7 @@ export function curvatures(centre: readonly Point[], isClosed: boolean): Float64
   return result;
 }
 
-/** Dashes of `dash` metres with gaps between, along a line. */
+/** Adds dashes of `dash` metres along the centre line, with gaps between them. */
 function addDashes(flat: Flat, lines: RoadLines, dash: number, gap: number, width: number, colour: Colour): void {
   const s = lengthsOf(lineOf(lines.centre));
   for (let i = 0; i + 1 < lines.centre.length; ++i) {
@@ -118,7 +121,7 @@ function addDashes(flat: Flat, lines: RoadLines, dash: number, gap: number, widt
   }
 }
 
-/** Chequers across the first point of the road. */
+/** Adds chequers across the first point of the road. */
 function addStart(flat: Flat, lines: RoadLines, white: Colour): void {
   const [left, right, centre, next] = [lines.left[0], lines.right[0], lines.centre[0], lines.centre[1]];
   if (!left || !right || !centre || !next) return;
@@ -149,7 +152,7 @@ function isPainted(bend: Float64Array, isClosed: boolean): boolean[] {
   return Array.from(bend, (_, i) => Array.from({ length: 2 * reach + 1 }, (_each, k) => i + k - reach).some(isTight));
 }
 
-/** The kerb outside one edge, in blocks of equal length. `side` is the edge, `other` the opposite one. */
+/** Adds the kerb outside one edge, in blocks of equal length. `side` is the edge, `other` the opposite one. */
 function addKerb(
   flat: Flat,
   side: readonly Point[],
@@ -205,6 +208,7 @@ export function roadMeshes(lines: RoadLines, isClosed: boolean, kerb: number, pa
   return meshes;
 }
 
+/** The meshes of a road for full-size cars. */
 function fullSizeMeshes(lines: RoadLines, isClosed: boolean, kerb: number, paint: RoadPaint): RoadMeshes {
   const { left, right, centre } = lines;
   const offset = (from: readonly Point[], to: readonly Point[], metres: number): Point[] =>

@@ -1,3 +1,4 @@
+// The road in the scene of three.js.
 import { BufferAttribute, BufferGeometry, type DataTexture, Group, Mesh, MeshBasicMaterial, type Scene } from 'three';
 import type { RoadLines } from '../state/road';
 import { greyTexture, Order, underTexture } from './landscape';
@@ -5,9 +6,10 @@ import { noiseTile } from './noise';
 import type { Palette } from './palette';
 import { type FlatMesh, roadMeshes } from './road_mesh';
 
-const GRAIN_M = 5; // size of the asphalt texture
-const PIECE = 120 * 18; // numbers for 120 quads
+const GRAIN_M = 5; // size of the asphalt texture; chosen
+const PIECE = 120 * 18; // numbers of a piece that is drawn or left out as a whole: 120 quads; chosen
 
+/** Texture coordinates of corners on the ground. */
 function placeOnGrain(positions: Float32Array): Float32Array {
   const uv = new Float32Array((positions.length / 3) * 2);
   for (let i = 0; i < uv.length; i += 2) {

@@ -1,39 +1,13 @@
+// Canvas of the 3D picture: loads its code, draws at every repaint, and explains why there is none.
 import { useEffect, useRef } from 'preact/hooks';
 import { onThemeChange } from '../draw/theme';
-import { cursorMark } from '../state/cursor';
-import { hindsight } from '../state/hindsight';
-import { layers } from '../state/layers';
-import { limit } from '../state/limit';
-import { link } from '../state/link';
-import { live } from '../state/live';
-import { road } from '../state/road';
-import { isPaused, run } from '../state/run';
 import { everyFrame } from '../state/ticker';
 import { listenToPointers } from './pointer';
 import { renderer } from './renderer';
 import { session } from './session';
-import type { Stage, View } from './stage';
-import { camera3d, isReady, obstacle, orbit, shows3d } from './view_state';
-
-const stillness = matchMedia('(prefers-reduced-motion: reduce)');
-
-function viewNow(): View {
-  return {
-    session,
-    run: run.value,
-    road: road.lines,
-    roadVersion: road.version,
-    plan: live.plan,
-    hindsight: layers.hindsight.value ? hindsight(live.pastPlans, live.plots, live.frame?.time_s ?? NaN) : null,
-    racingLine: layers.racingLine.value ? limit.value : null,
-    ghost: session.ghost,
-    cursor: cursorMark(),
-    camera: camera3d.value ?? 'chase',
-    orbit: orbit.value,
-    isHeld: isPaused.value || link.value !== 'live',
-    hasReducedMotion: stillness.matches,
-  };
-}
+import type { Stage } from './stage';
+import { viewNow } from './view';
+import { camera3d, isReady, obstacle, shows3d } from './view_state';
 
 /** Draws on the canvas until the returned function is called; loads the 3D code first. Sets `obstacle` on failure. */
 function play(canvas: HTMLCanvasElement): () => void {
@@ -44,6 +18,7 @@ function play(canvas: HTMLCanvasElement): () => void {
     isReady.value = false;
     for (const end of ends.splice(0).reverse()) end();
   };
+  /** Ends the picture with the reason. */
   const give = (sentence: string): void => {
     if (isOver) return;
     stop();

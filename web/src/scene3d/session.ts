@@ -1,3 +1,4 @@
+// Memory of the run for drawing: motion, best lap, tyre marks, trace and brake points.
 import { paintSize } from '../lib/paint_size';
 import { store } from '../lib/store';
 import type { Frame } from '../protocol/topics';
@@ -10,9 +11,13 @@ import { type Motion, motionOf, Playout } from './motion';
 import { RibbonRing } from './ribbon';
 import { TyreMarks } from './tyre_marks';
 
+/**
+ * Sizes for a full-size car: spacing and width of the trace, lengths of a brake mark and of a piece of a tyre mark;
+ * chosen.
+ */
 const TRACE_SPACING_M = 0.8;
-const BRAKE_MARK_M = 0.35;
 const TRACE_WIDTH_M = 0.16;
+const BRAKE_MARK_M = 0.35;
 const TYRE_MARK_M = 0.35;
 
 /**
@@ -25,8 +30,8 @@ export class Session {
   readonly marks = new TyreMarks();
   readonly trace = new RibbonRing(4000, 1);
   readonly brakes = new RibbonRing(256, 1);
-  #last: Motion | null = null;
-  #jumps = 0;
+  #last: Motion | null = null; // motion in the newest frame
+  #jumps = 0; // of the playout, so far
   #tracePoint = { x: NaN, y: NaN };
 
   /** The ghost: the rival if there is one, else the best lap of this session. */
@@ -34,6 +39,7 @@ export class Session {
     return ghostShown() ?? this.laps.best;
   }
 
+  /** Takes a frame that arrived at `now` [ms]. */
   take(frame: Frame, now: number): void {
     const motion = motionOf(frame);
     if (this.#last && motion.time < this.#last.time) this.#forgetMarks();
@@ -97,8 +103,10 @@ export class Session {
   }
 }
 
+/** The one session of the page. */
 export const session = new Session();
 
+/** Track of the newest frame. */
 const seen = store.data('page', () => ({ track: '' }));
 rebuildListeners.add(() => session.forget());
 // What is shown again moves the car and leaves no marks.

@@ -63,6 +63,7 @@ export class SlowPicture {
     this.#time.begin(now);
   }
 
+  /** Gives target and buffers another size. */
   #resize(width: number, height: number): void {
     const gl = this.#gl;
     this.#target.setSize(width, height);

@@ -1,3 +1,4 @@
+// The 3D picture: scene, lights, camera and drawing, in the quality that the machine manages.
 import {
   Color,
   DirectionalLight,
@@ -15,10 +16,8 @@ import { paintSize } from '../lib/paint_size';
 import type { Pose } from '../lib/poses';
 import type { Limit, Plan, Run } from '../protocol/topics';
 import type { CursorMark } from '../state/cursor';
-import type { Hindsight } from '../state/hindsight';
-import type { RoadLines } from '../state/road';
 import { BodyMotion } from './body_motion';
-import { CameraMan, type CameraName, type Orbit, type Shot } from './cameras';
+import { CameraMan, type CameraName, type Shot } from './cameras';
 import { CarView, GhostView } from './car_view';
 import type { GhostSource } from './ghost';
 import { Landscape } from './landscape';
@@ -31,23 +30,7 @@ import { RoadView } from './road_view';
 import type { Session } from './session';
 import { SlowPicture } from './slow_picture';
 import { plantTrees } from './trees';
-
-/** The content of the picture, read at every repaint. */
-export interface View {
-  readonly session: Session;
-  readonly run: Run | null;
-  readonly road: RoadLines;
-  readonly roadVersion: number;
-  readonly plan: Plan | null;
-  readonly hindsight: Hindsight | null;
-  readonly racingLine: Limit | null;
-  readonly ghost: GhostSource | null;
-  readonly cursor: CursorMark | null; // of the plots
-  readonly camera: CameraName;
-  readonly orbit: Orbit;
-  readonly isHeld: boolean; // paused, or the connection is lost
-  readonly hasReducedMotion: boolean; // the user prefers reduced motion
-}
+import type { View } from './view';
 
 const NO_LINE: Line = { x: [], y: [] };
 
@@ -59,8 +42,12 @@ export interface Geometry {
   readonly horizon: number;
 }
 
-const NEAR_M = 0.12; // nothing nearer is drawn, for a car in full size
-const SETTLE_MS = 1200; // duration of smoothing after the last change
+/** Distance below which nothing is drawn, for a full-size car; chosen: the steering wheel is farther from the eyes. */
+const NEAR_M = 0.12;
+/** Time after the last change for which drawing goes on, until the camera has settled [ms]; chosen. */
+const SETTLE_MS = 1200;
+/** Length of the car for which widths of lines are meant [m]. */
+const FULL_LENGTH_M = 4.5;
 
 /** The three-dimensional picture on one canvas. */
 export class Stage {
@@ -211,11 +198,13 @@ export class Stage {
     else this.#begin();
   }
 
+  /** Begins to draw: the shaders are compiled. */
   #begin(): void {
     this.#shaders = 'there';
     this.#lastChange = performance.now();
   }
 
+  /** Whether the picture has changed, or changed a moment ago. */
   #isWorth(now: number, view: View, motion: Motion | null, width: number, height: number): boolean {
     const key = [
       motion?.time,
@@ -238,6 +227,7 @@ export class Stage {
     return now - this.#lastChange < SETTLE_MS;
   }
 
+  /** Draws the scene at the resolution of the present quality. */
   #draw(width: number, height: number, now: number): void {
     const { pixelRatio } = this.#governor.quality;
     const ratio = Math.min(devicePixelRatio, pixelRatio);
@@ -260,15 +250,8 @@ export class Stage {
   #renew(view: View): void {
     const { run } = view;
     if (run) {
-      const carKey = [
-        run.car,
-        run.front_axle_m,
-        run.rear_axle_m,
-        run.track_width_m,
-        run.tire_width_m,
-        run.body_length_m,
-        run.body_width_m,
-      ].join();
+      const { car, front_axle_m, rear_axle_m, track_width_m, tire_width_m, body_length_m, body_width_m } = run;
+      const carKey = [car, front_axle_m, rear_axle_m, track_width_m, tire_width_m, body_length_m, body_width_m].join();
       if (carKey !== this.#carKey) this.#renewCar(run, carKey);
       const size = paintSize(run);
       const roadKey = [view.roadVersion, run.is_closed, run.kerb_width_m, size].join();
@@ -291,7 +274,7 @@ export class Stage {
       const { x_m: x, y_m: y } = view.racingLine ?? { x_m: [], y_m: [] };
       this.#bands.racingLine.show({ x, y }, 0.22 * width, 0.75);
     }
-    const size = (this.#car?.model.length ?? 4.5) / 4.5;
+    const size = this.#size;
     const { plan, drivenX, drivenY } = view.hindsight ?? { plan: { x_m: [], y_m: [] }, drivenX: [], drivenY: [] };
     this.#bands.predicted.show({ x: plan.x_m, y: plan.y_m }, 1.2 * size, 0.6);
     this.#bands.outcome.show({ x: drivenX, y: drivenY }, 0.2 * size, 1);
@@ -303,11 +286,15 @@ export class Stage {
   #layPlan(plan: Plan | null, motion: Motion | null): void {
     this.#planShown = plan;
     this.#ahead = plan && motion ? aheadOf({ x: plan.x_m, y: plan.y_m }, motion) : NO_LINE;
-    const size = (this.#car?.model.length ?? 4.5) / 4.5;
-    this.#bands.plan.show(this.#ahead, 0.5 * size, 0.9);
+    this.#bands.plan.show(this.#ahead, 0.5 * this.#size, 0.9);
   }
 
-  /** A bar across the road. */
+  /** Scale of lines: 1 for a full-size car. */
+  get #size(): number {
+    return (this.#car?.model.length ?? FULL_LENGTH_M) / FULL_LENGTH_M;
+  }
+
+  /** Shows the cursor of the plots as a bar across the road. */
   #showCursor(mark: CursorMark | null, size: number): void {
     const [dx, dy] = mark ? [-Math.sin(mark.yaw) * 5 * size, Math.cos(mark.yaw) * 5 * size] : [0, 0];
     const ends = mark ? [1, -1] : [];
@@ -318,6 +305,7 @@ export class Stage {
     this.#bands.act.show(line, 0.5 * size, 1);
   }
 
+  /** Builds another car with its ghost. */
   #renewCar(run: Run, key: string): void {
     this.#carKey = key;
     this.#lineShown = this.#limitShown = null; // their width is the car's
@@ -335,7 +323,7 @@ export class Stage {
     this.#sun.shadow.bias = -0.002;
   }
 
-  /** Returns the run time since the last picture [s]. */
+  /** Moves car, sun and ghost to their poses; returns the run time since the last picture [s]. */
   #move(view: View, motion: Motion | null): number {
     const car = this.#car;
     if (car) car.group.visible = motion !== null;
@@ -372,12 +360,14 @@ export class Stage {
 
   readonly #ghostPose: Pose = { x: 0, y: 0, yaw: 0, steer: 0 };
 
+  /** Moves the ghost to its pose, or hides it. */
   #moveGhost(source: GhostSource | null, motion: Motion, length: number): void {
     const pose = this.#ghostPose;
     if (!source?.poseAt(motion.lapTime, pose)) this.#ghost?.hide();
     else this.#ghost?.pose(pose, this.#wheelAngle, Math.hypot(pose.x - motion.x, pose.y - motion.y), length);
   }
 
+  /** Places the camera. */
   #film(view: View, motion: Motion | null, aspect: number, seconds: number): void {
     if (view.camera !== this.#wasCamera) this.#cameraMan.cut();
     this.#wasCamera = view.camera;
@@ -388,7 +378,7 @@ export class Stage {
       y: motion?.y ?? start?.y ?? 0,
       yaw: motion?.yaw ?? 0,
       speed: motion?.speed ?? 0,
-      length: model?.length ?? 4.5,
+      length: model?.length ?? FULL_LENGTH_M,
       eye: model?.eye ?? ([0, 0, 1] as const),
     };
     const lens = { aspect, plan: this.#ahead, orbit: view.orbit, isCut: view.hasReducedMotion };

@@ -1,15 +1,18 @@
+// Places of the trees beside a road.
 import type { Point } from '../lib/math';
 import type { RoadLines } from '../state/road';
 import { randomNumbers } from './noise';
 
+/** A tree in W. */
 export interface Tree extends Point {
   readonly height: number; // [m]
   readonly width: number;
   readonly kind: number; // of its leaves: 0, 1, 2
 }
 
+/** Size of the cells by which near points are found, and distance of trees from any edge of the road; chosen. */
 const CELL_M = 12;
-const CLEAR_M = 13; // from any edge of any road
+const CLEAR_M = 13;
 
 /** Trees along the road with clearance to its edges; equal for equal roads. */
 export function plantTrees(lines: RoadLines, limit = 420): Tree[] {

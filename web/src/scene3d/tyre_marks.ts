@@ -1,7 +1,9 @@
+// Tyre marks on the road.
 import { clamp } from '../lib/math';
 import type { Motion } from './motion';
 import { RibbonRing } from './ribbon';
 
+/** Places and widths of the wheels [m]. */
 export interface WheelBase {
   readonly front: number; // axle in front of the centre of mass [m]
   readonly rear: number; // behind it
@@ -10,8 +12,8 @@ export interface WheelBase {
   readonly spacing: number; // of the pieces of a mark
 }
 
-const CAPACITY = 6000; // pieces of all four wheels
-const SLIDE_RAD = 0.13; // slip angle that leaves marks where the use of grip is unknown
+const CAPACITY = 6000; // pieces of all four wheels; chosen
+const SLIDE_RAD = 0.13; // slip angle that leaves marks where the use of grip is unknown; chosen
 
 /** Opacity in [0, 1] of the mark of a tyre that uses `use` of its grip; with NaN the slip angle decides. */
 export function markStrength(use: number, slipAngle: number): number {

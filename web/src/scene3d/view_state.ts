@@ -1,3 +1,4 @@
+// Choice of the camera, and whether the 3D picture can be shown.
 import { computed } from '@preact/signals';
 import { persisted } from '../lib/persisted';
 import { store } from '../lib/store';
@@ -8,6 +9,7 @@ import { renderer } from './renderer';
 export type FlatView = 'track' | 'ahead';
 export type CameraChoice = CameraName | FlatView;
 
+/** All cameras, in the order of the key that changes them. */
 export const ALL_CAMERAS: readonly { value: CameraChoice; label: string; title: string }[] = [
   ...CAMERAS,
   { value: 'track', label: 'Track', title: 'The whole track, from above' },
@@ -32,20 +34,25 @@ export const isReady = store.signal('page', false);
 export const camera3d = computed<CameraName | null>(
   () => CAMERAS.find(({ value }) => value === camera.value && obstacle.value === null)?.value ?? null,
 );
+/** Whether the 3D picture is shown. */
 export const shows3d = computed(() => camera3d.value !== null && isReady.value);
 
+/** Where the free camera is; plain data, read by the drawing loop. */
 export const orbit: { value: Orbit } = { value: DEFAULT_ORBIT };
 
+/** Chooses a camera. */
 export function choose(next: CameraChoice): void {
-  obstacle.value = null; // try again
+  obstacle.value = null; // the 3D picture is tried again
   chosen.value = next;
 }
 
+/** Chooses the next camera. */
 export function nextCamera(): void {
   const at = ALL_CAMERAS.findIndex(({ value }) => value === camera.value);
   choose(ALL_CAMERAS[(at + 1) % ALL_CAMERAS.length]?.value ?? 'chase');
 }
 
+/** Multiplies the distance of the 3D cameras. */
 export function zoomCamera(factor: number): void {
   orbit.value = zoomedOrbit(orbit.value, factor);
 }

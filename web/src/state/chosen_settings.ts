@@ -1,3 +1,4 @@
+// Settings in Try: which rows are shown, and whether they change the run or the second car of Drive both.
 import { computed } from '@preact/signals';
 import { store } from '../lib/store';
 import type { SchemaEntry } from '../protocol/schema';
@@ -8,8 +9,6 @@ import { settingsFound } from './setting_search';
 import { entryOf, isControl, schema, settingChanges, settings, startSettings } from './settings';
 import { askedLog, type ChosenSetting, chosenSettings, loggedSchema, offered, valueInForce } from './what_if';
 
-// The settings of Try: which ones are shown, and which car they belong to.
-
 /** What a slider changes: the car that drives, or the second car of *Drive both*. */
 export type Target = 'run' | 'second';
 const chosenTarget = store.signal<Target>('page', 'run');
@@ -19,6 +18,7 @@ export const target = computed<Target>(() =>
   askedLog.value !== null || run.value?.mode === 'replay' ? 'second' : chosenTarget.value,
 );
 
+/** Lets the sliders change the run or the second car. */
 export function aimAt(next: Target): void {
   chosenTarget.value = next;
 }
@@ -26,6 +26,7 @@ export function aimAt(next: Target): void {
 /** What is searched for; empty: the ten settings that matter. */
 export const settingWords = store.signal('page', '');
 
+/** Value of the second car's setting, if it was changed. */
 const chosenOf = (key: string): Setting | undefined => chosenSettings.value.find((each) => each.key === key)?.value;
 const offeredOf = (key: string): SchemaEntry | undefined => offered().find((each) => each.key === key);
 
@@ -36,19 +37,22 @@ export function valueShown(key: string): Setting | undefined {
   return chosenOf(key) ?? (entry && valueInForce(entry));
 }
 
-/** The value that a row goes back to: of the start of the run, or of the run for the second car. */
+/** The value that a row is reset to: of the start of the run; for the second car, of the run itself. */
 export function firstValueOf(entry: SchemaEntry): Setting | undefined {
   if (target.value === 'second') return valueInForce(entry);
   return startSettings.value.get(entry.key) ?? (isControl(entry.key) ? (entry.default ?? undefined) : undefined);
 }
 
+/** Whether a row can be changed now. */
 export const canChange = (key: string): boolean =>
   target.value === 'run' ? canSet(key) : offeredOf(key) !== undefined;
 
+/** Most changes of the second car, so that the answer can be read; chosen. */
 const MOST_CHOSEN = 8;
 /** Why the last change of the second car was not taken; empty when it was. */
 export const choiceRefusal = store.signal('page', '');
 
+/** Changes a setting of the run, or of the second car. */
 export function change(key: string, value: Setting): void {
   if (target.value === 'run') {
     set(key, value);
@@ -82,13 +86,16 @@ const TEN: readonly { readonly name: string; readonly keys: readonly string[] }[
   { name: 'Mass of the car', keys: ['plant_options.mass_scale'] },
 ];
 
+/** A setting with the name that it has among the ten. */
 export interface NamedSetting {
   readonly entry: SchemaEntry;
-  readonly name?: string;
+  readonly name: string | undefined;
 }
 
+/** Schema of the recording that is asked about, else of the run. */
 const known = (): readonly SchemaEntry[] => (askedLog.value ? loggedSchema.value : schema.value);
 
+/** Those of the ten settings that the run has. */
 export const tenSettings = computed<readonly NamedSetting[]>(() => {
   const prefix = (run.value?.controller ?? '').replaceAll('-', '_');
   return TEN.flatMap(({ name, keys }) => {
@@ -99,10 +106,9 @@ export const tenSettings = computed<readonly NamedSetting[]>(() => {
 });
 
 /** The name that a setting has among the ten. */
-export const nameOf = (key: string): string | undefined =>
-  tenSettings.value.find(({ entry }) => entry.key === key)?.name;
+const nameOf = (key: string): string | undefined => tenSettings.value.find(({ entry }) => entry.key === key)?.name;
 
-const MOST_FOUND = 40;
+const MOST_FOUND = 40; // rows; chosen
 
 /** The settings that words find, by name, meaning or group; the pace of the run is one of them. */
 export function found(words: string): readonly NamedSetting[] {
@@ -110,12 +116,10 @@ export function found(words: string): readonly NamedSetting[] {
   const has = all.filter(({ key }) => askedLog.value !== null || settings.value.has(key));
   return settingsFound(has, words)
     .slice(0, MOST_FOUND)
-    .map((entry) => {
-      const name = nameOf(entry.key);
-      return name === undefined ? { entry } : { entry, name };
-    });
+    .map((entry) => ({ entry, name: nameOf(entry.key) }));
 }
 
+/** Number of all settings that can be searched. */
 export const countOfSettings = computed(() => known().filter(({ key }) => !isControl(key)).length);
 
 /** A setting of the sentence of Try; undefined where the run does not have it. */

@@ -1,7 +1,8 @@
+// Columns of the history: one for each number of a frame, and the stacked terms of the cost.
 import { FRAME_NUMBERS } from '../protocol/messages';
 import type { Frame } from '../protocol/topics';
 
-/** Most terms of a cost that are plotted; the last one takes the rest. */
+/** Most terms of a cost that are plotted, of which the last one takes the rest; chosen. */
 export const COST_TERMS = 10;
 
 /**
@@ -14,6 +15,7 @@ export const Column = Object.fromEntries(FRAME_NUMBERS.map((name, i) => [name, i
 
 export const COLUMN_COUNT = FRAME_NUMBERS.length + COST_TERMS;
 
+/** Column of a term of the cost. */
 export const costColumn = (term: number): number => FRAME_NUMBERS.length + Math.min(term, COST_TERMS - 1);
 
 /** One row of the history for a frame. Written into `row`, which is returned. */

@@ -1,3 +1,4 @@
+// The comparison on the page: the choice of A and B among laps, futures, recordings and the limit, and its cursor.
 import { computed } from '@preact/signals';
 import { store } from '../lib/store';
 import {
@@ -12,7 +13,6 @@ import {
 } from './comparison';
 import { type Corner, cornersOf } from './corners';
 import { lapCourse, limitCourse, recordedCourse } from './courses';
-import type { LapSamples } from './lap_samples';
 import { bestOf } from './lap_table';
 import { lapSamples, laps, sampledLaps } from './laps';
 import { limit } from './limit';
@@ -25,13 +25,15 @@ import { run } from './run';
 import { answer, futureNames } from './what_if';
 import { type FutureGrid, futureCourses } from './what_if_answer';
 
-// What is compared on the page: A and B, chosen among everything that has a course along this road.
-
 /** The courses chosen as A and B, by id; null: the newest lap, and the limit. */
 export const chosen = store.signal<readonly [string | null, string | null]>('run', [null, null]);
 
-const LIMIT = 'limit';
-/** Grid of this road: of the laps, or, before the start line is known, from where the first lap begins. */
+const LIMIT = 'limit'; // id of its course
+
+/**
+ * Points at which futures are sampled: those of the laps; before the start line is known, from the centre line's first
+ * point.
+ */
 function gridNow(): FutureGrid {
   const isLineKnown = Number.isFinite(lapSamples.s(0));
   const { points } = lapSamples;
@@ -44,6 +46,7 @@ function gridNow(): FutureGrid {
   };
 }
 
+/** Both futures of the newest answer. */
 const futuresNow = (): Course[] => (answer.value ? futureCourses(answer.value, gridNow(), futureNames()) : []);
 
 /** Both futures of the newest question, the run as it is against the changed one; null without an answer. */
@@ -77,22 +80,18 @@ export const pair = computed<readonly [Course | null, Course | null]>(() => {
   return [a, fastest ?? find(`lap ${best}`) ?? find(LIMIT) ?? null];
 });
 
-const known = store.data('page', () => ({ of: null as object | null, corners: [] as readonly Corner[] }));
+/** The corners of the newest road, and its centre line. */
+const found = store.data('page', () => ({ of: null as object | null, corners: [] as readonly Corner[] }));
 
 /** The corners of the road, found once for each road. */
-export function roadCorners(): readonly Corner[] {
+function roadCorners(): readonly Corner[] {
   const { centre } = road.lines;
-  if (known.of !== centre) Object.assign(known, { of: centre, corners: cornersOf(centre) });
-  return known.corners;
+  if (found.of !== centre) Object.assign(found, { of: centre, corners: cornersOf(centre) });
+  return found.corners;
 }
 
-/** Where laps begin, along the centre line [m]; its first point as long as no lap has begun. */
-export function startLine(samples: LapSamples = lapSamples): number {
-  const place = samples.place(0) - samples.s(0);
-  return Number.isFinite(place) ? place : 0;
-}
-
-const roadNow = (): ComparedRoad => ({ samples: gridNow(), corners: roadCorners(), line: startLine() });
+/** The road, as comparisons need it. */
+const roadNow = (): ComparedRoad => ({ samples: gridNow(), corners: roadCorners(), line: lapSamples.line });
 
 /** A against B along the road; null where one of them is not known, or both are the same. */
 export const comparison = computed<Comparison | null>(() => {
@@ -101,6 +100,7 @@ export const comparison = computed<Comparison | null>(() => {
   return a && b && a.id !== b.id ? compare(a, b, roadNow()) : null;
 });
 
+/** The corners with their numbers, for a road and a start line. */
 const marked = store.data('page', () => ({
   of: null as readonly Corner[] | null,
   line: NaN,
@@ -109,7 +109,7 @@ const marked = store.data('page', () => ({
 
 /** The corners with their numbers, by distance from the start line. */
 export function markedCorners(): readonly MarkedCorner[] {
-  const [corners, line] = [roadCorners(), startLine()];
+  const [corners, { line }] = [roadCorners(), lapSamples];
   if (marked.of !== corners || marked.line !== line) {
     const length = run.value?.track_length_m ?? NaN;
     const all = length > 0 ? numbered(corners, line, length) : [];
@@ -118,9 +118,9 @@ export function markedCorners(): readonly MarkedCorner[] {
   return marked.corners;
 }
 
-const PIECE_M = 25;
+const PIECE_M = 25; // length of a piece with one colour; chosen
 
-/** The line of the newest whole lap from a flying start by what it loses to the limit; null where it is not known. */
+/** The line of the newest flying lap, coloured by the time lost to the limit; null where one of them is not known. */
 export const lossesToLimit = computed<Losses | null>(() => {
   void sampledLaps.value;
   const newest = laps.value.filter(({ lap }) => lap > 1 && lapSamples.laps.includes(lap - 1)).at(-1);
@@ -137,7 +137,7 @@ export const lossesToLimit = computed<Losses | null>(() => {
   };
 });
 
-/** Where the cursor was put, from the start line [m]; null: nowhere yet. */
+/** Where the cursor was placed, from the start line [m]; null: nowhere yet. */
 const placed = store.signal<number | null>('run', null);
 
 /** Where the cursor of the comparison stands, from the start line [m]: at first in the corner that decides it. */
@@ -152,6 +152,6 @@ export function moveCursor(along: number): void {
   if (!both) return;
   placed.value = Math.min(both.length, Math.max(0, along));
   const lap = Number(/^lap (\d+)$/.exec(both.a.id)?.[1] ?? NaN);
-  const place = (startLine() + placed.value) % both.length;
+  const place = (lapSamples.line + placed.value) % both.length;
   cursorPlace.value = Number.isFinite(lap) ? { lap: lap - 1, place } : null;
 }

@@ -36,6 +36,7 @@ export interface CornerCost {
   readonly earlier: number;
 }
 
+/** A comparison of two courses. */
 export interface Comparison {
   readonly a: Course;
   readonly b: Course;
@@ -49,7 +50,7 @@ export interface Comparison {
   readonly corners: readonly CornerCost[];
 }
 
-/** Time that `a` is behind `b` at each point [s]: the one gap of the page. */
+/** Time that `a` is behind `b` at each point [s]; all gaps on the page are computed here. */
 export const timeGap = (a: Float64Array, b: Float64Array): Float64Array => a.map((time, i) => time - (b[i] ?? NaN));
 
 /** A road as far as laps on it are compared; `line`: where laps begin along its centre line [m]. */
@@ -79,6 +80,7 @@ export function compare(a: Course, b: Course, { samples, corners, line }: Compar
 const endOf = (total: number, gap: Float64Array): number =>
   Number.isFinite(total) ? total : (Array.from(gap).reverse().find(Number.isFinite) ?? NaN);
 
+/** A comparison before its corners are known. */
 type Along = Omit<Comparison, 'corners'>;
 
 /** What A has lost up to a distance from the line [s]. */
@@ -110,19 +112,20 @@ export function stretches(along: Along, each: number): Stretch[] {
   });
 }
 
-/** The end of the colour scale: what nine of ten pieces do not reach [s]. */
+/** The end of the colour scale: nine of ten pieces lose less than this [s]. */
 export function scaleOf(pieces: readonly Stretch[]): number {
   const sizes = pieces.map(({ lost }) => Math.abs(lost)).filter(Number.isFinite);
   sizes.sort((a, b) => a - b);
   return Math.max(0.01, sizes[Math.floor(0.9 * sizes.length)] ?? 0);
 }
 
-const LEAST_BRAKING_MPS = 1;
+const LEAST_BRAKING_MPS = 1; // loss of speed that counts as slowing down; chosen
 
+/** Index of the point at a distance from the line [m]. */
 export const pointAt = ({ s, length }: Pick<Along, 's' | 'length'>, place: number): number =>
   Math.min(s.length - 1, Math.max(0, Math.round((place / length) * s.length)));
 
-/** Where a course is fastest before the apex, and so begins to slow down [m]; NaN where it does not slow down. */
+/** Where a course is fastest before the apex, that is, begins to slow down [m]; NaN where it does not slow down. */
 function slowsAt(along: Along, speed: Float64Array, from: number, apex: number): number {
   const first = pointAt(along, from);
   const speeds = speed.subarray(first, pointAt(along, apex) + 1);
@@ -172,17 +175,17 @@ function cornerCosts(along: Along, corners: readonly Corner[], line: number): Co
   });
 }
 
-/** The corners in the order of the table and of the sentence: what decides the comparison comes first. */
+/** The corners, those that decide the comparison first: the order of table and sentence. */
 export function byCost({ corners, total }: Comparison): CornerCost[] {
   const sense = total < 0 ? -1 : 1;
   const known = corners.filter(({ lost }) => Number.isFinite(lost));
   return known.sort((one, other) => sense * (other.lost - one.lost));
 }
 
-/** The least difference that is one, of two decimals [s]. */
+/** Differences below these are not mentioned: what two decimals round to zero [s], and chosen ones. */
 const SAME_S = 0.005;
 const SAME_MPS = 0.3;
-const SAME_M = 4; // braking points are no better known
+const SAME_M = 4; // braking points are not known more precisely
 
 /** A difference in time with its sign, as sentence, table and plot show it: "+1.08". */
 export const signed = (seconds: number): string =>
@@ -211,6 +214,7 @@ export interface Headline {
   readonly rest: string; // "; T4 cost most, 1.08 s."
 }
 
+/** The sentence of a comparison. */
 export function headlineOf(comparison: Comparison): Headline {
   const { a, b, total } = comparison;
   const tone = toneOf(total);
@@ -235,6 +239,7 @@ export interface GapCause {
   readonly faster: number;
 }
 
+/** Causes in words, by the names that the program sends. */
 const CAUSES: Readonly<Record<string, string>> = {
   latency: 'the delay',
   'grip reserve': 'its grip reserve',

@@ -10,21 +10,23 @@ export interface Corner {
   readonly turn: number; // change of heading [rad], left positive
 }
 
+/** Distance of samples of the curvature, and how many of them are averaged; chosen. */
 const SPACING_M = 2;
-const SMOOTHED_OVER = 7; // samples
-/** A road with a larger radius is straight for a car at racing speed [1/m]. */
+const SMOOTHED_OVER = 7;
+/** Curvature below which the road is straight for a car at racing speed [1/m]; chosen. */
 const LEAST_CURVATURE = 1 / 220;
-/** Bends to the same side with less straight road between them are one corner [m]. */
+/** Length of straight road below which two bends to the same side are one corner [m]; chosen. */
 const SAME_CORNER_M = 20;
-/** A road that turns less than this makes no corner [rad]. */
+/** Turn below which a bend is no corner [rad]; chosen. */
 const LEAST_TURN = 0.3;
 
+/** Curvature of a closed road at equal distances. */
 interface Sampled {
   readonly spacing: number; // [m]
   readonly curvature: Float64Array; // [1/m], left positive
 }
 
-/** Headings at equal distances, then their changes, averaged over a car's length or so. */
+/** Samples the headings at equal distances, and averages their changes over 14 m of road; null for a short line. */
 function sampled(points: readonly Point[]): Sampled | null {
   const steps = points.slice(1).map((point, i) => {
     const before = points[i] ?? point;

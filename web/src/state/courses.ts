@@ -6,9 +6,10 @@ import { channelOnto, type OtherLap } from './other_laps';
 
 // What can be compared, as courses at the points of the laps.
 
-/** A lap whose speed at the line is less began at standstill [m/s]. */
+/** Speed at the line below which a lap began from standstill [m/s]; chosen. */
 const STANDING_MPS = 3;
 
+/** Whether a lap began from standstill; only a first lap can. */
 function isStanding(lap: number, samples: LapSamples): boolean {
   const speed = lap === 1 ? samples.channel(0, 'speed_mps') : null;
   return (speed?.find(Number.isFinite) ?? Infinity) < STANDING_MPS;

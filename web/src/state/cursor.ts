@@ -1,3 +1,4 @@
+// The cursor of the plots on the road: where the car was at its time, and the time of a clicked place.
 import { firstSince } from '../lib/math';
 import { Column } from './columns';
 import type { LapChannel } from './lap_samples';
@@ -31,8 +32,10 @@ export function cursorMark(): CursorMark | null {
   return { x, y, yaw: Number.isFinite(yaw) ? yaw : 0 };
 }
 
-/** Farther than this from where the car has been, a click on the road means nothing [m]. */
+/** Distance from the driven path beyond which a click on the road means nothing [m]; chosen. */
 const REACH_M = 25;
+/** An older place counts only where it is nearer by this [m]; chosen. */
+const NEARER_M = 0.5;
 
 /** The newest time at which the car was nearest to a point [s]; null when it was never near. */
 export function timeNear(x: number, y: number): number | null {
@@ -45,12 +48,12 @@ export function timeNear(x: number, y: number): number | null {
   let [best, nearest] = [-1, REACH_M];
   for (let i = times.length - 1; i >= 0; --i) {
     const distance = Math.hypot((xs[i] ?? NaN) - x, (ys[i] ?? NaN) - y);
-    if (distance < nearest - 0.5) [best, nearest] = [i, distance];
+    if (distance < nearest - NEARER_M) [best, nearest] = [i, distance];
   }
   return best < 0 ? null : (times[best] ?? null);
 }
 
-/** Puts the cursor where the road was clicked, and holds the plots there. */
+/** Puts the cursor where the road was clicked, and holds the plots there; returns its time [s]. */
 export function pointAt(x: number, y: number): number | null {
   const time = timeNear(x, y);
   cursorTime.value = time;

@@ -1,16 +1,20 @@
+// Tour of the dashboard: drive, let drive, slow, blind, break, tune, compare.
 import { hasBit } from '../lib/bits';
 import type { Frame } from '../protocol/topics';
 import { run } from './run';
 import { schema, settingChanges, settings } from './settings';
 import { compareStep, isDriving, type Step, type Tour } from './tour_step';
 
+/** Way or time after which a task is done; chosen. */
 const BY_HAND_M = 30;
 const ALONE_S = 5;
 const TUNED_S = 3;
 
+/** Whether the program offers a fault of these groups. */
 const hasFault = (group: readonly string[]): boolean =>
   schema.value.some(({ key, fault }) => fault && group.includes(fault.group) && settings.value.has(key));
 
+/** Whether a fault of these groups is active in a frame. */
 function isFaulty(frame: Frame, groups: readonly string[]): boolean {
   const names = run.value?.fault_names ?? [];
   return schema.value.some(
@@ -22,6 +26,7 @@ function isFaulty(frame: Frame, groups: readonly string[]): boolean {
 /** How the settings differ from the start of the run, as one text. */
 const changesNow = (): string => settingChanges.value.map(({ key, to }) => `${key}=${to}`).join();
 
+/** The steps, in their order. */
 const STEPS: readonly Step[] = [
   {
     name: 'drive',

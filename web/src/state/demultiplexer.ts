@@ -1,17 +1,7 @@
+// Distributes messages, by topic, to the modules that hold their content; and clears these when the run changes or a
+// recording jumps to another time.
 import { store } from '../lib/store';
-import {
-  type Change,
-  complete,
-  type Frame,
-  type Lap,
-  type Limit,
-  type Path,
-  type Plan,
-  type Run,
-  type Situation,
-  type TopicName,
-  type Topics,
-} from '../protocol/topics';
+import { complete, type Frame, type Plan, type TopicName, type Topics } from '../protocol/topics';
 import { forgetFrameEvents, noteChange, noteEvents, noteNotices, setFaultNames } from './event_log';
 import { forgetFaultMarks, noteFaultChange, noteFaultMarks } from './faults';
 import { forgetSamples, noteLap, receiveLap } from './laps';
@@ -19,12 +9,9 @@ import { receiveLimit } from './limit';
 import { forgetRows, keepFrame, keepPlan, live } from './live';
 import { Past } from './past';
 import { isReplaying, keepRecent } from './replay';
-import { type RoadLines, receiveReference, receiveRoadLine } from './road';
+import { receiveReference, receiveRoadLine } from './road';
 import { receiveRun, run } from './run';
 import { receiveSituation } from './situation';
-
-// Distributes messages, by topic, to the modules that hold their content; and clears these when the run changes or a
-// recording jumps to another time.
 
 /** Called with each frame on arrival, also while the page is hidden; `now` as of performance.now() [ms]. */
 export const frameListeners = new Set<(frame: Frame, now: number) => void>();
@@ -35,52 +22,42 @@ export const restartListeners = new Set<() => void>();
 /** Called when all frames of the run follow once more, because older ones have come. */
 export const rebuildListeners = new Set<() => void>();
 
-/** Stores one message, also of an older program. `now` as of performance.now() [ms]. */
-export function receive<T extends TopicName>(topic: T, sent: Topics[T], now: number): void {
-  const message = complete(topic, sent);
-  switch (topic) {
-    case '/chicane/frame':
-      receiveFrame(message as Frame, now);
-      break;
-    case '/chicane/past':
-      past.keepBefore(message as Frame);
-      break;
-    case '/chicane/situation':
-      receiveSituation(message as Situation);
-      break;
-    case '/chicane/plan':
-      last.plan = message as Plan;
-      keepPlan(last.plan, !isReplaying());
-      break;
-    case '/chicane/run':
-      receiveRun(message as Run);
-      setFaultNames(run.value?.fault_names ?? []);
-      noteNotices(run.value?.notices ?? []);
-      break;
-    case '/chicane/lap':
-      receiveLap(message as Lap);
-      break;
-    case '/chicane/limit':
-      receiveLimit(message as Limit);
-      break;
-    case '/chicane/change':
-      noteChange(message as Change);
-      noteFaultChange(message as Change);
-      break;
-    case '/reference':
-      receiveReference(message as Path);
-      break;
-    case '/track/left':
-    case '/track/right':
-    case '/track/centre':
-      receiveRoadLine(topic.slice('/track/'.length) as keyof RoadLines, message as Path);
-  }
-}
-
-/** What came last. */
+/** The newest frame and plan. */
 const last = store.data('moment', () => ({ frame: null as Frame | null, plan: null as Plan | null }));
 const past = new Past();
 
+/** What each topic's messages are stored by; `now` as of performance.now() [ms]. */
+const RECEIVERS: { readonly [T in TopicName]: (message: Topics[T], now: number) => void } = {
+  '/chicane/frame': receiveFrame,
+  '/chicane/past': (frame) => past.keepBefore(frame),
+  '/chicane/situation': receiveSituation,
+  '/chicane/plan': (plan) => {
+    last.plan = plan;
+    keepPlan(plan, !isReplaying());
+  },
+  '/chicane/run': (description) => {
+    receiveRun(description);
+    setFaultNames(description.fault_names);
+    noteNotices(description.notices);
+  },
+  '/chicane/lap': receiveLap,
+  '/chicane/limit': receiveLimit,
+  '/chicane/change': (change) => {
+    noteChange(change);
+    noteFaultChange(change);
+  },
+  '/reference': receiveReference,
+  '/track/left': (path) => receiveRoadLine('left', path),
+  '/track/right': (path) => receiveRoadLine('right', path),
+  '/track/centre': (path) => receiveRoadLine('centre', path),
+};
+
+/** Stores one message, also of an older program. `now` as of performance.now() [ms]. */
+export function receive<T extends TopicName>(topic: T, sent: Topics[T], now: number): void {
+  RECEIVERS[topic](complete(topic, sent), now);
+}
+
+/** Stores a frame; one with an earlier time begins the run again. */
 function receiveFrame(frame: Frame, now: number): void {
   let before = last.frame;
   if (before && frame.time_s < before.time_s) {
@@ -105,8 +82,8 @@ function receiveFrame(frame: Frame, now: number): void {
 }
 
 /**
- * So many frames of before are still to come. What has come is put before the present from time to time, and when all
- * of it is here: history, samples of laps and events are computed again from all frames.
+ * Takes how many frames of the past are still to come. From time to time, and when all are here, history, samples of
+ * laps and events are computed again from all frames.
  */
 export function receivePastLeft(left: number, now: number): void {
   const frames = past.take(left, now);

@@ -7,14 +7,15 @@ import { compareStep, isDriving, type Step, type Tour } from './tour_step';
 // docs/effects.md has the same changes with their laps.
 
 const PRESET = 'fast-short-step';
-const WATCHED_S = 5;
-const MPH = 0.44704;
+const WATCHED_S = 5; // chosen
+const MPH = 0.44704; // [m/s]
 
 const isFasterThan = (mph: number) => (frame: Frame) => isDriving(frame) && frame.speed_mps > mph * MPH;
 const isSlowerThan = (mph: number) => (frame: Frame) => isDriving(frame) && frame.speed_mps < mph * MPH;
-/** Farther from its line than the preset ever is, or stopped by the guard. */
+/** Whether the car is farther from its line than the preset ever is, or not driven by the controller. */
 const isWide = (frame: Frame): boolean => Math.abs(frame.lateral_error_m) > 1.5 || frame.rung !== 0;
 
+/** An effect of a setting, and how it is seen. */
 interface Effect extends Pick<Step, 'name' | 'title' | 'text'> {
   readonly key: string;
   /** What it is set to, or beyond. */
@@ -25,6 +26,7 @@ interface Effect extends Pick<Step, 'name' | 'title' | 'text'> {
   isSeen(frame: Frame): boolean;
 }
 
+/** The step of the tour for an effect: set, seen, taken back. */
 function stepOf({ key, to, tasks, isSeen, ...rest }: Effect): Step {
   return {
     ...rest,
@@ -42,6 +44,7 @@ function stepOf({ key, to, tasks, isSeen, ...rest }: Effect): Step {
   };
 }
 
+/** The effects, in the order of the tour. */
 const EFFECTS: readonly Effect[] = [
   {
     name: 'horizon',
@@ -89,6 +92,7 @@ const EFFECTS: readonly Effect[] = [
   },
 ];
 
+/** The step that brings the controller of the tour. */
 const CHOOSE: Step = {
   name: 'choose',
   title: 'Choose a controller to change',

@@ -2,22 +2,11 @@ import { beforeEach, describe, expect, it } from 'vitest';
 import { store } from '../lib/store';
 import type { Frame } from '../protocol/topics';
 import { events, noteChange, noteEvents, noteNotices, setFaultNames } from './event_log';
-
-const frame = (change: Partial<Frame>): Frame =>
-  ({
-    time_s: 0,
-    rung: 0,
-    solve_status: 0,
-    is_gated: false,
-    is_off_track: false,
-    is_manual: false,
-    active_faults: 0,
-    ...change,
-  }) as Frame;
+import { changeAt, frameWith } from './test_messages';
 
 let before: Frame | null = null;
 function see(change: Partial<Frame>): void {
-  const now = frame(change);
+  const now = frameWith(change);
   noteEvents(now, before);
   before = now;
 }
@@ -56,15 +45,17 @@ describe('event log', () => {
   });
 
   it('lists changed settings, but not those of driving by hand', () => {
-    noteChange({ stamp: { sec: 3, nsec: 500_000_000 }, cycle: 90n, name: 'latency_ms', value: '150.00000000000003' });
-    noteChange({ stamp: { sec: 4, nsec: 0 }, cycle: 91n, name: 'manual.steer', value: '0.1' });
+    noteChange({ ...changeAt(3, 'latency_ms', '150.00000000000003'), stamp: { sec: 3, nsec: 500_000_000 } });
+    noteChange(changeAt(4, 'manual.steer', '0.1'));
     expect(events.value).toMatchObject([{ text: 'latency_ms set to 150', time: 3.5 }]);
-    noteChange({ stamp: { sec: 5, nsec: 0 }, cycle: 92n, name: 'run.racing_line', value: '0.87' });
-    expect(events.value[0]?.text).toBe('Races by a new lap, planned with 87 % of the grip');
-    noteChange({ stamp: { sec: 6, nsec: 0 }, cycle: 93n, name: 'run.racing_line', value: '0.97, slides' });
-    expect(events.value[0]?.text).toBe('Races by a new lap, planned with 97 % of the grip, and to slide');
-    noteChange({ stamp: { sec: 7, nsec: 0 }, cycle: 94n, name: 'run.racing_line', value: '1, slip 0.65' });
-    expect(events.value[0]?.text).toBe('Races by a new lap, planned with 100 % of the grip, 65 % of the slip');
+    for (const [value, words] of [
+      ['0.87', '87 % of the grip'],
+      ['0.97, slides', '97 % of the grip, and to slide'],
+      ['1, slip 0.65', '100 % of the grip, 65 % of the slip'],
+    ] as const) {
+      noteChange(changeAt(5, 'run.racing_line', value));
+      expect(events.value[0]?.text).toBe(`Races by a new lap, planned with ${words}`);
+    }
   });
 
   it('lists once what was assumed as the run began', () => {

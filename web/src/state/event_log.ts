@@ -1,3 +1,4 @@
+// Events of the run: found by comparing frames, and changes that the program reports.
 import { begunBits, hasBit } from '../lib/bits';
 import { store } from '../lib/store';
 import { nameInWords, rungInWords, type Sentence, statusInWords } from '../lib/words';
@@ -12,17 +13,19 @@ export interface RunEvent extends Sentence {
   readonly isChange?: boolean; // somebody changed something; all others are found in frames
 }
 
-const KEPT = 60;
+const KEPT = 60; // events; chosen
 
-/** Newest first. */
+/** Events of the run, newest first. */
 export const events = store.signal<readonly RunEvent[]>('moment', []);
 
+/** A condition of frames that is an event as long as it lasts. */
 interface Watch {
   readonly name: string;
   /** The condition in this frame, or null for none. A different text is a different event. */
   look(frame: Frame): Sentence | null;
 }
 
+/** Conditions that are events. */
 const WATCHES: readonly Watch[] = [
   { name: 'rung', look: ({ rung, guard_reason }) => (rung === 0 ? null : rungInWords(rung, guard_reason)) },
   { name: 'status', look: ({ solve_status }) => (solve_status >= 0 ? null : statusInWords(solve_status)) },
@@ -34,8 +37,9 @@ const WATCHES: readonly Watch[] = [
   { name: 'manual', look: ({ is_manual }) => (is_manual ? { severity: 'good', text: 'Driven by hand' } : null) },
 ];
 
+/** Id of the next event, and the names of faults by bit. */
 const kept = store.data('page', () => ({ nextId: 1, faultNames: [] as readonly string[] }));
-/** Events that are not over, by what they were found by. */
+/** Events that are not over, by the condition that found them. */
 const found = store.data('moment', () => ({ open: new Map<string, RunEvent>() }));
 
 /** Clears the events that were found in frames. */
@@ -44,17 +48,19 @@ export function forgetFrameEvents(): void {
   found.open = new Map();
 }
 
+/** Sets the names of faults by their bits in frames. */
 export function setFaultNames(names: readonly string[]): void {
   kept.faultNames = names;
 }
 
-/** Keeps them by time: changes of a run that was joined late arrive apart from its frames. */
+/** Inserts an event by its time: changes of a run that was joined late arrive apart from its frames. */
 function add(event: RunEvent): void {
   const at = events.value.findIndex(({ time }) => time <= event.time);
   const before = at < 0 ? events.value.length : at;
   events.value = [...events.value.slice(0, before), event, ...events.value.slice(before)].slice(0, KEPT);
 }
 
+/** Ends the event of a condition where its text changes, and begins the next one. */
 function follow(key: string, now: Sentence | null, time: number): void {
   const running = found.open.get(key);
   if (running && running.text !== now?.text) {
@@ -78,7 +84,7 @@ export function noteEvents(frame: Frame, before: Frame | null): void {
   }
 }
 
-/** What the program assumed when the run began; it comes with each description of the run. */
+/** Adds what the program assumed when the run began, once: it comes with each description of the run. */
 export function noteNotices(notices: readonly string[]): void {
   for (const text of notices) {
     if (events.value.some((event) => event.text === text)) continue;
@@ -86,8 +92,10 @@ export function noteNotices(notices: readonly string[]): void {
   }
 }
 
+/** Name of a fault in words. */
 export const faultInWords = (name: string): string => nameInWords(name.replace(/^fault\./, ''));
 
+/** Adds a change of a setting, or of the lap that the car races by. */
 export function noteChange(change: Change): void {
   const { name, value } = change;
   const isPlan = name === 'run.racing_line';

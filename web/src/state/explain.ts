@@ -1,9 +1,10 @@
+// Evaluations of the history: shares of time, and the plan of a moment ago.
 import { firstSince } from '../lib/math';
 import { type Plan, timeOf } from '../protocol/topics';
 import { Column } from './columns';
 import type { History } from './history';
 
-/** The share of the last `seconds` in which the value of a column was as `is` says. */
+/** Share of the rows of the last `seconds` whose value in a column satisfies `is`, in [0, 1]. */
 export function shareOf(history: History, column: number, seconds: number, is: (value: number) => boolean): number {
   const times = history.column(Column.time_s);
   const values = history.column(column).subarray(firstSince(times, (times.at(-1) ?? 0) - seconds));

@@ -8,14 +8,14 @@ import { entryOf } from './settings';
 
 // Faults of the run: until when each lasts, and where on the road they began.
 
-const MARKS_KEPT = 60;
+const MARKS_KEPT = 60; // chosen
 
 /** Where faults began, in W [m]. */
 export const faultMarks = store.signal<readonly Point[]>('moment', []);
-/** When each fault that was switched on will end [s], by its key. */
-const untils = new Map<string, number>();
+/** Time of the run at which each fault that was switched on ends [s], by its key. */
+const ends = new Map<string, number>();
 
-store.onReset('moment', () => untils.clear());
+store.onReset('moment', () => ends.clear());
 
 /** Clears where faults began, which is found in frames. */
 export function forgetFaultMarks(): void {
@@ -28,10 +28,11 @@ export function noteFaultChange(change: Change): void {
   if (!name.startsWith('fault.')) return;
   const own = entryOf(name)?.fault?.duration_s ?? NaN;
   const seconds = /^\+([\d.e-]+)/.exec(value)?.[1];
-  if (value === 'false') untils.delete(name);
-  else untils.set(name, timeOf(change) + (seconds === undefined ? own : Number(seconds)));
+  if (value === 'false') ends.delete(name);
+  else ends.set(name, timeOf(change) + (seconds === undefined ? own : Number(seconds)));
 }
 
+/** Marks the place where a fault begins. */
 export function noteFaultMarks({ active_faults, x_m: x, y_m: y }: Frame, before: Frame | null): void {
   const marks = begunBits(active_faults, before?.active_faults).map(() => ({ x, y }));
   if (marks.length > 0) faultMarks.value = [...faultMarks.value, ...marks].slice(-MARKS_KEPT);
@@ -39,7 +40,7 @@ export function noteFaultMarks({ active_faults, x_m: x, y_m: y }: Frame, before:
 
 /** Seconds until a fault ends by itself; not-a-number where that is not known. */
 export function secondsLeft(key: string, now: number): number {
-  const left = (untils.get(key) ?? NaN) - now;
+  const left = (ends.get(key) ?? NaN) - now;
   return left >= 0 ? left : NaN;
 }
 

@@ -3,17 +3,14 @@ import type { Plan } from '../protocol/topics';
 import { COLUMN_COUNT, Column } from './columns';
 import { hindsight } from './hindsight';
 import { History } from './history';
+import { planWith } from './test_messages';
 
 /** Straight on along x at 10 m/s, made at `time` and acting 0.1 s later. */
 const plan = (time: number): Plan => {
   const times = [0.1, 0.6, 1.1, 1.6].map((ahead) => time + ahead);
-  return {
-    stamp: { sec: Math.floor(time), nsec: (time % 1) * 1e9 },
-    time_s: Float64Array.from(times),
-    x_m: Float64Array.from(times, (each) => 10 * each),
-    y_m: Float64Array.from([0, 0, 1, 2]),
-    yaw_rad: Float64Array.from([0, 0, 0.2, 0.4]),
-  } as unknown as Plan;
+  const columns = { time_s: Float64Array.from(times), x_m: Float64Array.from(times, (each) => 10 * each) };
+  const turn = { y_m: Float64Array.of(0, 0, 1, 2), yaw_rad: Float64Array.of(0, 0, 0.2, 0.4) };
+  return planWith({ stamp: { sec: Math.floor(time), nsec: (time % 1) * 1e9 }, ...columns, ...turn });
 };
 
 function driven(until: number): History {

@@ -6,7 +6,7 @@ import { Column } from './columns';
 import { planOf } from './explain';
 import type { History } from './history';
 
-/** Age of the plan that is compared with the driven path [s]. */
+/** Age of the plan that is compared with the driven path [s]; chosen. */
 export const HINDSIGHT_S = 1;
 
 /** A past plan and the path driven since, as lines of the centre of mass in world coordinates [m]. */

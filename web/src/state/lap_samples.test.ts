@@ -11,10 +11,6 @@ const moment = (distance: number, time: number, speed = 20): LapMoment => ({
   time_s: time,
   speed_mps: speed,
   lateral_error_m: distance / 1000,
-  steer_rad: 0,
-  throttle: 0,
-  x_m: 0,
-  y_m: 0,
 });
 
 /** Drives laps at one speed each, a frame every `step` seconds. */
@@ -81,7 +77,7 @@ describe('lap samples', () => {
 
   it('know the fastest, and its time at any place', () => {
     const samples = new LapSamples();
-    expect(samples.best).toBe(-1);
+    expect([samples.best, samples.line]).toEqual([-1, 0]);
     drive(samples, [20, 25, 24]);
     expect(samples.best).toBe(1);
     for (const distance of [1.7, 123.4, 800, 998])
@@ -189,7 +185,7 @@ describe('lap samples', () => {
       expect(samples.laps).toEqual(begin > 0 ? [] : [0]);
       samples.push(2, moment(1, 0.05), 50);
       expect(samples.laps).toEqual(begin > 0 ? [1] : [0, 1]);
-      expect(samples.place(0)).toBeCloseTo(LINE, -1);
+      expect([samples.place(0), samples.line]).toEqual([expect.closeTo(LINE, -1), expect.closeTo(LINE, -1)]);
     }
   });
 });

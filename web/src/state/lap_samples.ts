@@ -1,24 +1,26 @@
+// Laps as functions of the distance along the road, sampled from frames.
 import { mix, mod } from '../lib/math';
 import type { Frame } from '../protocol/topics';
 import { LONGEST_SILENCE_S } from './silence';
 
-/** The channels kept of a lap, at equal distances along the road. */
-export const LAP_CHANNELS = [
-  'time_s',
-  'speed_mps',
-  'lateral_error_m',
-  'steer_rad',
-  'throttle',
-  'x_m',
-  'y_m',
-  'grip',
-  'step_time_us',
-  'iterations',
-  'cost',
-  'delay_s',
-  'prediction_error_m',
-] as const;
-export type LapChannel = (typeof LAP_CHANNELS)[number];
+/** Channels of a lap, sampled at equal distances along the road, and their values in a frame. */
+const CHANNELS = {
+  time_s: (frame: Frame) => frame.lap_time_s,
+  speed_mps: (frame: Frame) => frame.speed_mps,
+  lateral_error_m: (frame: Frame) => frame.lateral_error_m,
+  steer_rad: (frame: Frame) => frame.steer_applied_rad,
+  throttle: (frame: Frame) => frame.throttle_applied,
+  x_m: (frame: Frame) => frame.x_m,
+  y_m: (frame: Frame) => frame.y_m,
+  grip: (frame: Frame) => Math.max(frame.front_tire_use, frame.rear_tire_use),
+  step_time_us: (frame: Frame) => frame.step_time_us,
+  iterations: (frame: Frame) => frame.iterations,
+  cost: (frame: Frame) => frame.cost,
+  delay_s: (frame: Frame) => frame.delay_s,
+  prediction_error_m: (frame: Frame) => frame.prediction_error_m,
+} as const;
+export type LapChannel = keyof typeof CHANNELS;
+export const LAP_CHANNELS = Object.keys(CHANNELS) as readonly LapChannel[];
 
 /** A sample of a lap; `s_m` is measured along the centre line, whose origin need not be the start line. */
 export type LapMoment = Readonly<Record<LapChannel, number>> & { readonly s_m: number };
@@ -26,28 +28,19 @@ export type LapMoment = Readonly<Record<LapChannel, number>> & { readonly s_m: n
 /** A sample of which nothing is known. */
 export const UNKNOWN_MOMENT = Object.fromEntries(['s_m', ...LAP_CHANNELS].map((name) => [name, NaN])) as LapMoment;
 
-/** What a frame says of its lap. */
-export const momentOf = (frame: Frame): LapMoment => ({
-  s_m: frame.s_m,
-  time_s: frame.lap_time_s,
-  speed_mps: frame.speed_mps,
-  lateral_error_m: frame.lateral_error_m,
-  steer_rad: frame.steer_applied_rad,
-  throttle: frame.throttle_applied,
-  x_m: frame.x_m,
-  y_m: frame.y_m,
-  grip: Math.max(frame.front_tire_use, frame.rear_tire_use),
-  step_time_us: frame.step_time_us,
-  iterations: frame.iterations,
-  cost: frame.cost,
-  delay_s: frame.delay_s,
-  prediction_error_m: frame.prediction_error_m,
-});
+/** The sample that a frame gives of its lap. */
+export function momentOf(frame: Frame): LapMoment {
+  const moment = { s_m: frame.s_m } as Record<LapChannel | 's_m', number>;
+  for (const name of LAP_CHANNELS) moment[name] = CHANNELS[name](frame);
+  return moment;
+}
 
+/** Points of a lap: one every few metres of road; chosen. */
 const POINTS = 1000;
-/** Laps that are kept, beside the best one. */
+/** Number of laps that are kept, beside the best one; chosen. */
 export const KEPT_LAPS = 16;
 
+/** Memory of one lap. */
 interface Slot {
   lap: number; // -1: free
   isComplete: boolean;
@@ -73,9 +66,9 @@ export class LapSamples {
   completed = 0;
   readonly #slots: Slot[];
   #length = NaN; // of the road [m]
-  #line = NaN; // where laps begin [m]
-  #current: Slot | null = null;
-  #last: (LapMoment & { lap: number }) | null = null;
+  #line = NaN; // where laps begin; not-a-number: not known yet [m]
+  #current: Slot | null = null; // of the lap that is driven now
+  #last: (LapMoment & { lap: number }) | null = null; // newest sample
 
   constructor(kept = KEPT_LAPS) {
     const channels = () =>
@@ -100,6 +93,11 @@ export class LapSamples {
     if (Object.is(length, this.#length)) return;
     this.clear();
     this.#length = length;
+  }
+
+  /** Where laps begin, along the centre line from its first point [m]; 0 before any lap has begun. */
+  get line(): number {
+    return this.#line || 0;
   }
 
   /** Length of the road [m]; not-a-number before it is known. */
@@ -183,10 +181,12 @@ export class LapSamples {
     ++this.completed;
   }
 
+  /** Slots of complete laps. */
   get #done(): Slot[] {
     return this.#slots.filter((slot) => slot.lap >= 0 && slot.isComplete);
   }
 
+  /** Distance between points [m]. */
   get #spacing(): number {
     return this.#length / POINTS;
   }
@@ -230,6 +230,7 @@ export class LapSamples {
     this.#begin(next);
   }
 
+  /** Begins a lap in a free slot, or in that of the oldest lap. */
   #begin(lap: number): void {
     const slot = this.#slots.find((each) => each.lap < 0) ?? this.#oldest();
     slot.lap = lap;

@@ -5,8 +5,10 @@ import type { Lap } from '../protocol/topics';
 
 // Conditions of a lap: settings that were changed, who drove, faults. The program sends them with each lap.
 
+/** The conditions of a lap. */
 type Setup = Pick<Lap, 'setting_names' | 'setting_values' | 'is_mixed' | 'by_hand_share' | 'faults'>;
 
+/** Whether a text stands for a value. */
 const meansSame = (text: string, value: Setting): boolean =>
   typeof value === 'number' ? Number(text) === value : text === String(value);
 

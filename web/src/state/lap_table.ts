@@ -1,3 +1,4 @@
+// The best lap, and laps as CSV.
 import { csv } from '../lib/csv';
 import type { Lap, Limit } from '../protocol/topics';
 import { LAP_CHANNELS, type LapSamples } from './lap_samples';

@@ -76,20 +76,14 @@ describe('laps', () => {
     expect(lapSamples.laps).toEqual([]);
   });
 
-  it('of a recording are all known as soon as they are sampled', async () => {
-    vi.resetModules(); // the page keeps all laps for good
-    const page = await import('./laps');
-    for (const lap of [1, 2, 3]) page.receiveLap(lapWith(lap, 30));
-    page.keepAllLaps();
-    expect(page.laps.value.map(({ lap }) => lap)).toEqual([1, 2, 3]);
-  });
-
-  it('of a recording stay sampled, whatever moment of it is shown', async () => {
+  it('of a recording are all known at once, and stay sampled, whatever moment of it is shown', async () => {
     vi.resetModules(); // the page keeps all laps for good
     const page = await import('./laps');
     (await import('./run')).receiveRun(runWith({ track_length_m: 100 }));
     driveLap(page, 0);
+    for (const lap of [1, 2, 3]) page.receiveLap(lapWith(lap, 30));
     page.keepAllLaps();
+    expect(page.laps.value.map(({ lap }) => lap)).toEqual([1, 2, 3]);
     page.forgetLaps();
     driveLap(page, 1);
     expect(page.lapSamples.laps).toEqual([0]);

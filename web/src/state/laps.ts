@@ -1,3 +1,4 @@
+// Laps of the run: the table that the program sends, and samples along the road.
 import { computed } from '@preact/signals';
 import { store } from '../lib/store';
 import type { Frame, Lap } from '../protocol/topics';
@@ -5,8 +6,8 @@ import { LapSamples, momentOf } from './lap_samples';
 import { bestOf } from './lap_table';
 import { run } from './run';
 
-const LAPS_KEPT = 1000;
-/** Views follow no more often: a page that is opened late in a run hears of a thousand laps at once [ms]. */
+const LAPS_KEPT = 1000; // chosen
+/** Least time between updates of `laps` [ms]: a page that is opened late receives a thousand laps at once; chosen. */
 const PUBLISHED_EVERY_MS = 100;
 
 /** Completed laps as the server sends them, by number: the newest ones and the best. */
@@ -21,13 +22,16 @@ export const lapSamples = new LapSamples();
 /** Counts the laps that have been sampled to their end: views that show samples read it, and follow. */
 export const sampledLaps = store.signal('page', 0);
 
-/** A recording's laps are all sampled when it is opened: none of its moments adds to them or removes any. */
+/** Laps that were received, and whether they are all of a recording, or wait for the next update of `laps`. */
 const table = store.data('page', () => ({ hasAllLaps: false, kept: [] as readonly Lap[], isHeldBack: false }));
+
+/** Keeps the laps and samples of a recording, which are read as a whole, whatever moment of it is shown. */
 export function keepAllLaps(): void {
   table.hasAllLaps = true;
-  publish(); // none of them is held back any more: who samples them needs all
+  publish(); // at once: all of them are sampled next
 }
 
+/** Updates `laps` at once, or after the last update has been long enough ago. */
 function publish(): void {
   if (table.hasAllLaps) laps.value = table.kept; // a moment of a recording is shown as a whole
   if (table.hasAllLaps || table.isHeldBack) return;
@@ -39,6 +43,7 @@ function publish(): void {
   }, PUBLISHED_EVERY_MS);
 }
 
+/** Clears all laps; the samples of a recording stay. */
 export function forgetLaps(): void {
   table.kept = [];
   table.isHeldBack = false;
@@ -54,6 +59,7 @@ export function forgetSamples(): void {
   if (!table.hasAllLaps) lapSamples.clear();
 }
 
+/** Stores a completed lap. */
 export function receiveLap(lap: Lap): void {
   const before = table.kept;
   const isNext = before.length === 0 || (before.at(-1)?.lap ?? 0) < lap.lap;
@@ -74,7 +80,7 @@ export function sampleLap(frame: Frame): void {
   sampledLaps.value = lapSamples.completed;
 }
 
-/** Takes from a frame what it says about laps. */
+/** Updates samples and best time by a frame. */
 export function noteLap(frame: Frame): void {
   if (!table.hasAllLaps) sampleLap(frame);
   if (frame.last_lap_time_s > 0 && !(frame.last_lap_time_s >= bestSeen.value)) bestSeen.value = frame.last_lap_time_s;

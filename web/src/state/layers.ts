@@ -11,6 +11,7 @@ export const layers = {
 
 export type Layer = keyof typeof layers;
 
+/** Switches a layer. */
 export function toggleLayer(layer: Layer): void {
   layers[layer].value = !layers[layer].value;
 }

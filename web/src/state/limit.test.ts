@@ -26,17 +26,8 @@ function samples(): LapSamples {
   const all = new LapSamples();
   all.setLength(1000);
   for (let i = -1; i <= 101; ++i) {
-    const since = ((i + 100) % 100) / 5;
-    all.push(
-      i < 0 ? 0 : i < 100 ? 1 : 2,
-      {
-        ...UNKNOWN_MOMENT,
-        s_m: (500 + 10 * (i + 100)) % 1000,
-        time_s: since,
-        speed_mps: 50,
-      },
-      20,
-    );
+    const moment = { s_m: (500 + 10 * (i + 100)) % 1000, time_s: ((i + 100) % 100) / 5, speed_mps: 50 };
+    all.push(1 + Math.floor(i / 100), { ...UNKNOWN_MOMENT, ...moment }, 20);
   }
   return all;
 }
@@ -126,34 +117,18 @@ describe('a lap against itself as the limit', () => {
     for (let part = 0; part < 11; ++part) {
       const line = (part / 11) * track.length;
       const { s, time, speed, lapTime } = drive(track, line);
-      const itself: Limit = {
-        ...UNKNOWN_LIMIT,
-        is_known: true,
-        lap_time_s: lapTime,
-        s_m: s,
-        time_s: time,
-        speed_mps: speed,
-        x_m: s,
-        y_m: s,
-        n_m: s,
-      };
+      const columns = { s_m: s, time_s: time, speed_mps: speed, x_m: s, y_m: s, n_m: s };
+      const itself: Limit = { ...UNKNOWN_LIMIT, is_known: true, lap_time_s: lapTime, ...columns };
       const all = new LapSamples();
       all.setLength(track.length);
       // Frames 40 ms apart see the line within rounding, some of them on the other side of it.
-      const moment = (lap: number, i: number, since: number) =>
-        all.push(
-          lap,
-          {
-            ...UNKNOWN_MOMENT,
-            s_m: s[i] ?? NaN,
-            time_s: since,
-            speed_mps: speed[i] ?? NaN,
-          },
-          lap === 0 ? 0 : lapTime,
-        );
-      moment(0, s.length - 2, lapTime - 0.01);
-      for (let i = 1; i < s.length - 1; ++i) moment(1, i, time[i] ?? NaN);
-      moment(2, 1, time[1] ?? NaN);
+      const push = (lap: number, i: number, since = time[i] ?? NaN): void => {
+        const moment = { s_m: s[i] ?? NaN, time_s: since, speed_mps: speed[i] ?? NaN };
+        all.push(lap, { ...UNKNOWN_MOMENT, ...moment }, lap === 0 ? 0 : lapTime);
+      };
+      push(0, s.length - 2, lapTime - 0.01);
+      for (let i = 1; i < s.length - 1; ++i) push(1, i);
+      push(2, 1);
 
       const driven = all.channel(1, 'time_s') as Float64Array;
       const best = limitChannel(itself, all, 'time_s') as Float64Array;

@@ -1,3 +1,4 @@
+// The fastest possible lap ("the limit"), and its comparison with driven laps.
 import { firstSince, mix, mod } from '../lib/math';
 import { store } from '../lib/store';
 import type { Lap, Limit } from '../protocol/topics';
@@ -8,6 +9,7 @@ export const limit = store.signal<Limit | null>('run', null);
 /** Why it is not known, in one sentence; empty while the program gives no reason. */
 export const whyNoLimit = store.signal('run', '');
 
+/** Stores the limit, or why it is not known. */
 export function receiveLimit(message: Limit): void {
   limit.value = message.is_known ? message : null;
   whyNoLimit.value = message.is_known ? '' : message.why_not;
@@ -28,6 +30,7 @@ export function gapToLimit(lap: Lap, limit: Limit | null): number {
   return limit && lap.lap >= limit.first_lap ? 100 * (lap.lap_time_s / limit.lap_time_s - 1) : NaN;
 }
 
+/** Distances to the points of each limit, computed once. */
 const drivenTo = new WeakMap<Limit, Float64Array>();
 
 /**

@@ -3,10 +3,11 @@ import { store } from '../lib/store';
 /** The connection to the program; always live while a recording is shown. */
 export type Link = 'connecting' | 'live' | 'lost';
 
+/** State of the connection. */
 export const link = store.signal<Link>('page', 'connecting');
 /** How often the page has tried to connect since the connection was lost. */
 export const attempt = store.signal('page', 0);
-/** What the server can be asked to do. */
+/** Names of the services that the server offers. */
 export const services = store.signal<ReadonlySet<string>>('page', new Set());
 /** The last sentence from the server; null once it was read. */
 export const notice = store.signal<string | null>('page', null);

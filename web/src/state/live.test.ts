@@ -1,6 +1,6 @@
 import { beforeEach, describe, expect, it } from 'vitest';
 import { store } from '../lib/store';
-import { COST_TERMS, Column, costColumn } from './columns';
+import { COST_TERMS, costColumn } from './columns';
 import { keepFrame, keepPlan, live } from './live';
 import { frameWith, planWith } from './test_messages';
 
@@ -10,17 +10,6 @@ const keep = (change: Parameters<typeof frameWith>[0], now = 0, isNew = true): v
 beforeEach(() => store.reset('moment'));
 
 describe('the history', () => {
-  it('holds the numbers of a frame under their names, in their units', () => {
-    keep({ time_s: 3 });
-    expect(live.plots.newest(Column.time_s)).toBe(3);
-    expect(live.plots.newest(Column.speed_mps)).toBe(10);
-    expect(live.plots.newest(Column.lateral_error_m)).toBe(0.5);
-    expect(live.plots.newest(Column.steer_asked_rad)).toBe(0.1);
-    expect(live.plots.newest(Column.steer_applied_rad)).toBe(-0.1);
-    expect(live.plots.newest(Column.step_time_us)).toBe(1500);
-    expect(live.plots.newest(Column.is_gated)).toBe(0);
-  });
-
   it('stacks the terms of the cost, the last layer taking the surplus', () => {
     const terms = new Float64Array(COST_TERMS + 2).fill(1);
     terms[1] = -5; // no layer

@@ -1,3 +1,4 @@
+// Driving by hand: keys, pad and gamepad as one stick position.
 import { clamp } from '../lib/math';
 import { store } from '../lib/store';
 
@@ -7,7 +8,7 @@ export interface Stick {
   readonly throttle: number;
 }
 
-/** Keys and pad held by the driver; plain data, read by ramp(). */
+/** Keys, pad and gamepad as the driver holds them; plain data, read by ramp(). */
 export const held = {
   left: false,
   right: false,
@@ -19,8 +20,9 @@ export const held = {
 /** The stick position that is sent; shown by the indicator. */
 export const stick = store.signal<Stick>('page', { steer: 0, throttle: 0 });
 
-const STEER_RATE = 2.2; // of full travel per second, while a key is held
-const RETURN_RATE = 4; // after it is released
+/** Rates of the stick, in full travels per second; chosen. */
+const STEER_RATE = 2.2; // while a key is held
+const RETURN_RATE = 4; // after the key is released
 const PEDAL_RATE = 3;
 
 /**
@@ -30,6 +32,7 @@ const PEDAL_RATE = 3;
 export const keyLock = (speed: number): number =>
   clamp((8 / Math.max(8, Number.isFinite(speed) ? speed : 0)) ** 2, 0.03, 1);
 
+/** `value` moved towards `target` by at most `step`. */
 const towards = (value: number, target: number, step: number): number => value + clamp(target - value, -step, step);
 
 /** The stick position `seconds` later. */
@@ -49,6 +52,7 @@ export function ramp(now: Stick, seconds: number, speed: number): Stick {
   };
 }
 
+/** Driving keys. */
 const KEYS: Readonly<Record<string, 'left' | 'right' | 'up' | 'down'>> = {
   arrowleft: 'left',
   arrowright: 'right',
@@ -64,6 +68,7 @@ export function holdKey(key: string, isDown: boolean): boolean {
   return true;
 }
 
+/** Releases everything. */
 export function releaseAll(): void {
   held.left = held.right = held.up = held.down = false;
   held.pad = held.gamepad = null;

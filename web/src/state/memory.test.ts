@@ -1,5 +1,5 @@
 import { expect, it, vi } from 'vitest';
-import type { Frame, Plan, Run } from '../protocol/topics';
+import { frameWith, planWith, runWith } from './test_messages';
 
 // A page of its own, whatever other tests have loaded.
 vi.resetModules();
@@ -14,7 +14,7 @@ const SPEED = 45; // [m/s]
 
 it('what the page keeps stops growing', () => {
   store.reset('moment');
-  receive('/chicane/run', { track_length_m: 1000 } as Run, 0);
+  receive('/chicane/run', runWith({ track_length_m: 1000 }), 0);
   const sizes = () => [
     live.plots.length,
     live.trace.length,
@@ -26,30 +26,11 @@ it('what the page keeps stops growing', () => {
     for (let i = from; i < to; ++i) {
       const distance = (i * SPEED) / 60;
       const lap = Math.floor(distance / 1000);
-      receive(
-        '/chicane/frame',
-        {
-          cycle: BigInt(i),
-          time_s: i / 60,
-          s_m: distance % 1000,
-          lap,
-          lap_time_s: (distance % 1000) / SPEED,
-          last_lap_time_s: lap > 0 ? 1000 / SPEED : 0,
-          x_m: distance,
-          y_m: 0,
-          speed_mps: SPEED,
-          step_time_us: 200 + (i % 997),
-          is_gated: i % 200 === 0,
-          cost_terms: [1, 2, 3],
-          active_faults: i % 300 === 0 ? 1 : 0,
-        } as unknown as Frame,
-        i,
-      );
-      receive(
-        '/chicane/plan',
-        { stamp: { sec: Math.floor(i / 60), nsec: 0 }, speed_mps: [SPEED] } as unknown as Plan,
-        i,
-      );
+      const s = distance % 1000;
+      const ofLap = { lap, s_m: s, lap_time_s: s / SPEED, last_lap_time_s: lap > 0 ? 1000 / SPEED : 0 };
+      const events = { is_gated: i % 200 === 0, active_faults: i % 300 === 0 ? 1 : 0 };
+      receive('/chicane/frame', frameWith({ time_s: i / 60, x_m: distance, ...ofLap, ...events }), i);
+      receive('/chicane/plan', planWith({ stamp: { sec: Math.floor(i / 60), nsec: 0 } }), i);
     }
   };
   drive(0, FRAMES);

@@ -1,3 +1,4 @@
+// Mode of the page, kept in its address.
 import { effect } from '@preact/signals';
 import { store } from '../lib/store';
 
@@ -5,6 +6,7 @@ import { store } from '../lib/store';
 export const MODES = ['watch', 'understand', 'try'] as const;
 export type Mode = (typeof MODES)[number];
 
+/** The mode that is shown. */
 export const mode = store.signal<Mode>('page', 'watch');
 
 /** The mode that an address names; null without one. */

@@ -1,3 +1,4 @@
+// Requests to the program: every view changes the run through these functions.
 import { effect } from '@preact/signals';
 import { store } from '../lib/store';
 import type { AskAnswer, ServiceName, Setting, Source } from '../protocol/source';
@@ -11,15 +12,18 @@ const operated = store.data('page', () => ({ source: null as Source | null, isCo
 /** A change that would restart the run and waits for the operator's confirmation. */
 export const pendingConfirmation = store.signal<{ readonly key: string; readonly value: Setting } | null>('page', null);
 
+/** Requests to change settings. */
 export const requests = new SettingRequests(
   (key, value) =>
     operated.source?.set?.(key, value) ?? Promise.resolve({ value: null, sentence: `${key} cannot be changed here` }),
 );
 
+/** Sends all requests to another source from now on. */
 export function attach(to: Source): void {
   operated.source = to;
 }
 
+/** Connects now instead of waiting. */
 export const retry = (): void => operated.source?.retryNow?.();
 
 /** Requests the values of all settings again. */
@@ -38,8 +42,10 @@ export function refreshOnNewChoice(): void {
   });
 }
 
+/** Whether a service can be called now. */
 export const can = (name: ServiceName): boolean => services.value.has(name) && link.value === 'live';
 
+/** Calls a service; a refusal becomes a notice. */
 export function call(name: ServiceName, data?: boolean): void {
   void operated.source?.call?.(name, data).then((sentence) => {
     if (sentence !== null) notice.value = sentence;

@@ -14,11 +14,13 @@ export interface OtherLap {
   readonly samples: LapSamples;
 }
 
+/** Laps that can be compared with those of the run. */
 export const otherLaps = store.signal<readonly OtherLap[]>('page', []);
 
-/** Two roads whose lengths differ by more are not the same [m]. */
+/** Difference in length up to which two roads are the same [m]; chosen. */
 const SAME_LENGTH_M = 0.5;
 
+/** Whether laps were driven on the same road. */
 export const isSameRoad = (a: LapSamples, b: LapSamples): boolean => Math.abs(a.length - b.length) <= SAME_LENGTH_M;
 
 /** Adds the sampled laps of a recording, which replaces one of that name. */
@@ -28,11 +30,12 @@ export function addOtherLaps(recording: string, laps: readonly Lap[], samples: L
   otherLaps.value = [...kept, ...known.map(({ lap, lap_time_s: time }) => ({ recording, lap, time, samples }))];
 }
 
+/** Removes them all. */
 export function removeOtherLaps(): void {
   otherLaps.value = [];
 }
 
-/** Lines that were found from frames lie up to so many points apart though they are the same. */
+/** Points by which two start lines found from frames may differ though they are the same; chosen. */
 const SAME_LINE = 2;
 
 /**
@@ -42,12 +45,8 @@ const SAME_LINE = 2;
 function timeAtLine({ lap, samples }: OtherLap, first: number): number {
   const known = samples.channel(lap - 1, 'time_s')?.[first] ?? NaN;
   if (Number.isFinite(known) || first > SAME_LINE) return known;
-  const speed =
-    samples
-      .channel(lap - 1, 'speed_mps')
-      ?.filter(Number.isFinite)
-      .at(-1) ?? NaN;
-  return (first * samples.length) / samples.points / speed;
+  const speeds = samples.channel(lap - 1, 'speed_mps')?.filter(Number.isFinite);
+  return (first * samples.length) / samples.points / (speeds?.at(-1) ?? NaN);
 }
 
 /**

@@ -1,13 +1,14 @@
+// Detects that a restarted program drives another choice, and brings back the one before.
 import { computed } from '@preact/signals';
 import { store } from '../lib/store';
 import { requests } from './operate';
 import { run } from './run';
 
-// A program that is started again drives its own choice: the page says so, and can bring back the one before.
-
+/** Settings that choose a run. */
 const CHOICES = ['track', 'car', 'preset', 'controller'] as const;
 type Choice = Readonly<Record<(typeof CHOICES)[number], string>>;
 
+/** The choice that the last program drove. */
 const before = store.signal<Choice | null>('page', null);
 
 /** The choice of the run that this page showed before, where the program now drives another one. */
@@ -22,6 +23,7 @@ export function rememberRun(): void {
   if (now) before.value = { track: now.track, car: now.car, preset: now.preset, controller: now.controller };
 }
 
+/** Keeps the run that is driven now. */
 export function forgetOtherRun(): void {
   before.value = null;
 }
@@ -33,4 +35,5 @@ export async function chooseBefore(): Promise<void> {
   for (const key of CHOICES) if (old && old[key] !== run.value?.[key]) await requests.set(key, old[key]);
 }
 
+/** A choice in words. */
 export const inWords = ({ track, car, preset }: Choice): string => `${preset} with ${car} on ${track}`;

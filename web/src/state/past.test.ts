@@ -19,18 +19,10 @@ const SPEED = 50; // [m/s]
 const frameAt = (i: number): Frame => {
   const distance = i * 0.2 * SPEED;
   const lap = Math.floor(distance / 1000);
-  return frameWith({
-    cycle: BigInt(i),
-    time_s: 0.2 * i,
-    s_m: distance % 1000,
-    lap,
-    lap_time_s: (distance % 1000) / SPEED,
-    last_lap_time_s: lap > 0 ? 20 : 0,
-    x_m: distance,
-    speed_mps: SPEED,
-    is_gated: i === 30,
-    active_faults: i === 40 ? 1 : 0,
-  });
+  const s = distance % 1000;
+  const ofLap = { lap, s_m: s, lap_time_s: s / SPEED, last_lap_time_s: lap > 0 ? 20 : 0 };
+  const events = { is_gated: i === 30, active_faults: i === 40 ? 1 : 0 };
+  return frameWith({ cycle: BigInt(i), time_s: 0.2 * i, x_m: distance, speed_mps: SPEED, ...ofLap, ...events });
 };
 const times = (): number[] => [...live.plots.column(Column.time_s)].map((time) => Math.round(time / 0.2));
 const upTo = (first: number, last: number): number[] => Array.from({ length: last - first + 1 }, (_, i) => first + i);

@@ -1,6 +1,7 @@
+// Frames from before the page was opened, until all of them have arrived.
 import type { Frame } from '../protocol/topics';
 
-/** Between two looks at what has come of the past, at least so long [ms], unless it is all. */
+/** Least time between two updates with frames of the past, except for the last one [ms]; chosen. */
 const SHOWN_EVERY_MS = 1000;
 
 /**
@@ -10,8 +11,8 @@ const SHOWN_EVERY_MS = 1000;
 export class Past {
   #before: Frame[] = []; // the newest first
   #since: Frame[] = [];
-  #isExpected = false;
-  #shown = 0;
+  #isExpected = false; // the past may still follow
+  #shown = 0; // frames at the last update
   #shownAt = Number.NEGATIVE_INFINITY;
 
   /** A connection begins: the past of its run may follow. */
@@ -23,7 +24,7 @@ export class Past {
     this.#isExpected = true;
   }
 
-  /** The run has begun again: frames still under way belong to the one before. */
+  /** Drops all frames: the run has begun again, and those still to come belong to the run before. */
   drop(): void {
     this.#before = [];
     this.#since = [];
@@ -39,8 +40,8 @@ export class Past {
   }
 
   /**
-   * All frames so far, in their order, when it is time to show them: when all are here (`left` is 0), or twice as many
-   * as at the last time; null otherwise. Nothing is kept once all are here.
+   * All frames so far by time, when they are due: when all are here (`left` is 0), or twice as many as at the last
+   * update; null otherwise. Once all are here none is kept.
    */
   take(left: number, now: number): readonly Frame[] | null {
     if (!this.#isExpected || this.#before.length === 0) {

@@ -1,9 +1,11 @@
+// View of the plots over time: window, hold, zoom, cursor and mark.
 import { persisted } from '../lib/persisted';
 import { store } from '../lib/store';
 import { COLUMN_COUNT, Column } from './columns';
 import { History } from './history';
 import { LONGEST_WINDOW_S, live } from './live';
 
+/** Lengths of the time axis that can be chosen [s]. */
 export const WINDOWS_S = [10, 20, 60] as const;
 
 /** How far back plots reach while they follow the run [s]. */
@@ -28,16 +30,19 @@ export function toggleMark(): void {
 /** A place on a lap that is compared, under the cursor: the lap from 0, and metres along the road; null: over none. */
 export const cursorPlace = store.signal<{ readonly lap: number; readonly place: number } | null>('page', null);
 
+/** The history at the moment the plots were held. */
 const frozen = store.data('page', () => ({ history: null as History | null }));
 
 /** The history that plots draw: the live one, or a copy from the moment they were held. */
 export const plotted = (): History => (isFrozen.value && frozen.history) || live.plots;
 
+/** Time of the newest row that is plotted [s]; null without any. */
 function newestTime(): number | null {
   const newest = plotted().newest(Column.time_s);
   return Number.isFinite(newest) ? newest : null;
 }
 
+/** Holds the plots as they are now. */
 export function freeze(): void {
   if (isFrozen.value) return;
   frozen.history ??= new History(COLUMN_COUNT, live.plots.capacity);
@@ -45,6 +50,7 @@ export function freeze(): void {
   isFrozen.value = true;
 }
 
+/** Lets the plots follow the run again, without zoom, cursor and mark. */
 export function thaw(): void {
   isFrozen.value = false;
   zoomed.value = null;
@@ -52,9 +58,10 @@ export function thaw(): void {
   markTime.value = null;
 }
 
+/** Holds the plots, or lets them follow. */
 export const toggleFrozen = (): void => (isFrozen.value ? thaw() : freeze());
 
-/** Zooms into a time range; very short ones are ignored. */
+/** Zooms into a time range [s]; ranges up to 50 ms are ignored. */
 export function zoomTo(from: number, to: number): void {
   if (!(to - from > 0.05)) return;
   freeze();

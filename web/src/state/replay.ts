@@ -5,14 +5,18 @@ import { everyFrame } from './ticker';
 
 // The last seconds of the run once more, in the page, while the run goes on or after it is over.
 
-export const REPLAY_S = 10;
-const MOST_KEPT = 1200;
+export const REPLAY_S = 10; // chosen
+const MOST_KEPT = 1200; // frames: twice those of 10 s at 60 a second
+/** Longest step of the replay, after a pause of the page [ms]; chosen. */
+const LONGEST_STEP_MS = 250;
 
+/** A frame of the run with the plan of its time. */
 export interface Moment {
   readonly frame: Frame;
   readonly plan: Plan | null;
 }
 
+/** Moments of the last seconds, and those that are shown again. */
 const replay = store.data('page', () => ({
   recent: [] as Moment[],
   shownAgain: [] as readonly Moment[],
@@ -25,6 +29,7 @@ export const replayLeft = store.signal<number | null>('page', null);
 /** Called with each frame that is shown again, and with the newest one at the end. */
 export const replayListeners = new Set<(frame: Frame, now: number) => void>();
 
+/** Whether moments are shown again. */
 export const isReplaying = (): boolean => replay.shownAgain.length > 0;
 
 /** Keeps the frames of the last seconds. */
@@ -35,7 +40,7 @@ export function keepRecent(frame: Frame, plan: Plan | null): void {
   const from = frame.time_s - REPLAY_S;
   let old = 0;
   while ((replay.recent[old]?.frame.time_s ?? Infinity) < from || replay.recent.length - old > MOST_KEPT) ++old;
-  // In blocks: to shift one by one would move the whole row each time.
+  // In blocks of 64, because removing one frame moves all others.
   if (old > 64 || replay.recent.length > MOST_KEPT) replay.recent.splice(0, old);
 }
 
@@ -44,8 +49,10 @@ store.onReset('moment', () => {
   endReplay();
 });
 
+/** Whether there is something to show again. */
 export const canReplay = (): boolean => replay.recent.length > 1;
 
+/** Shows a moment in place of the newest one. */
 function show({ frame, plan }: Moment, now: number): void {
   live.frame = frame;
   live.plan = plan;
@@ -70,7 +77,7 @@ export function showAgain(moments: readonly Moment[]): void {
   replay.stop();
   let [at, time, clock] = [0, replay.shownAgain[0]?.frame.time_s ?? 0, NaN];
   replay.stop = everyFrame((now) => {
-    if (Number.isFinite(clock)) time += Math.min(now - clock, 250) / 1000;
+    if (Number.isFinite(clock)) time += Math.min(now - clock, LONGEST_STEP_MS) / 1000;
     clock = now;
     const first = at;
     while (at < replay.shownAgain.length && (replay.shownAgain[at]?.frame.time_s ?? Infinity) <= time) ++at;
@@ -81,7 +88,7 @@ export function showAgain(moments: readonly Moment[]): void {
   });
 }
 
-/** Back to the newest frame. */
+/** Ends the replay and shows the newest frame. */
 export function endReplay(): void {
   replay.stop();
   replay.stop = () => undefined;

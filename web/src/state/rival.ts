@@ -1,3 +1,5 @@
+// Race of two settings on one stage: the program drives a second car, which the page draws as the ghost and samples by
+// laps.
 import { effect } from '@preact/signals';
 import { type Pose, poseAt } from '../lib/poses';
 import { store } from '../lib/store';
@@ -17,18 +19,17 @@ import { run } from './run';
 import { entryOf } from './settings';
 import type { ChosenSetting } from './what_if';
 
-// A race of two settings on one stage: the program drives a second car beside the run's own, the page draws it as the
-// ghost, and asks for its laps.
-
 /** State of the race; null without one. */
 export const race = store.signal<Race | null>('page', null);
 /** The settings of B. */
 export const raced = store.signal<readonly ChosenSetting[]>('page', []);
 export const raceProblem = store.signal('page', '');
 
+/** Whether the program offers races. */
 export const canRace = (): boolean => can('/rival');
 
-const AHEAD_S = 0.6; // shown beyond the newest pose at most, by its speed [s]
+/** Longest time by which B is extrapolated beyond its newest pose [s]; chosen: three times POLL_MS. */
+const AHEAD_S = 0.6;
 
 /** B's pose at the time of the run's newest frame; B's poses arrive later, and are extrapolated until then. */
 export function poseOf(poses: RacePoses, time: number, into: Pose): boolean {
@@ -45,6 +46,7 @@ export function poseOf(poses: RacePoses, time: number, into: Pose): boolean {
   return true;
 }
 
+/** B as a ghost. */
 const ghost: GhostSource = {
   label: 'B',
   lapTime: Infinity,
@@ -58,9 +60,12 @@ effect(() => {
 
 /** B's laps as functions of the distance, sampled from its poses. */
 const driven = { samples: new LapSamples(), id: NaN };
+/** Number of laps of B that are sampled to their end. */
 const sampled = store.signal('page', 0);
+/** Time of the race up to which its poses are sampled [s]. */
 const known = store.data('page', () => ({ since: -1 }));
 
+/** Samples the new poses of B; begins anew for another race or another road. */
 function sample(now: Race): void {
   const length = run.value?.track_length_m ?? NaN;
   if (now.id !== driven.id || driven.samples.length !== length || (now.poses.time_s.at(-1) ?? 0) < known.since) {
@@ -68,8 +73,7 @@ function sample(now: Race): void {
     driven.samples.setLength(length);
     [driven.id, known.since] = [now.id, -1];
   }
-  const line = lapSamples.place(0) - lapSamples.s(0);
-  known.since = sampleRace(driven.samples, now, Number.isFinite(line) ? line : 0, known.since);
+  known.since = sampleRace(driven.samples, now, lapSamples.line, known.since);
   sampled.value = driven.samples.completed;
 }
 
@@ -83,9 +87,10 @@ export function raceCourses(onto: LapSamples): Course[] {
     .reverse();
 }
 
-const POLL_MS = 200;
+const POLL_MS = 200; // chosen
 const next = store.data('page', () => ({ look: undefined as ReturnType<typeof setTimeout> | undefined }));
 
+/** Asks the program for the race, and again as long as it goes on. */
 async function look(): Promise<void> {
   clearTimeout(next.look);
   next.look = undefined;
@@ -116,6 +121,7 @@ export async function startRace(chosenSettings: readonly ChosenSetting[]): Promi
   await look();
 }
 
+/** Ends the race; the run goes on. */
 export async function endRace(): Promise<void> {
   await ask('/rival', '{}');
   race.value = null;

@@ -1,9 +1,9 @@
 import { describe, expect, it } from 'vitest';
 import { LapSamples } from './lap_samples';
 import { poseOf } from './rival';
-import { type RaceLap, readRace, sampleRace, standingOf } from './rival_answer';
+import { readRace, sampleRace, standingOf } from './rival_answer';
 
-const lap = (number: number, time: number, isClean = true): RaceLap => ({ lap: number, time, isClean });
+const lap = (number: number, time: number, isClean = true) => ({ lap: number, time, isClean });
 const none = readRace({ state: 'racing' });
 
 describe('the standing of a race', () => {

@@ -12,8 +12,8 @@ export const POSE_COLUMNS = ['time_s', 'x_m', 'y_m', 'yaw_rad', 'steer_rad', 'sp
 export type RacePoses = Readonly<Record<(typeof POSE_COLUMNS)[number], readonly number[]>>;
 
 export type Race = Readonly<ReturnType<typeof readRace>>;
-export type RaceLap = Race['a'][number];
 
+/** Reads the laps of one car. */
 const readLaps = (value: unknown) =>
   list(value)
     .map(fields)

@@ -18,11 +18,13 @@ export const road = {
 
 const pointsOf = (path: Path): Point[] => path.poses.map(({ pose }) => pose.position);
 
+/** Stores an edge or the centre line. */
 export function receiveRoadLine(name: keyof RoadLines, path: Path): void {
   road.lines = { ...road.lines, [name]: pointsOf(path) };
   ++road.version;
 }
 
+/** Stores the reference line. */
 export function receiveReference(path: Path): void {
   road.reference = pointsOf(path);
 }

@@ -1,12 +1,9 @@
 // What the map shows on the road and beside it.
+import type { Corner } from './corners';
 
-/** A corner on the map; places along the centre line [m]. */
-export interface MarkedCorner {
+/** A corner on the map, with its number from the start line on. */
+export interface MarkedCorner extends Corner {
   readonly number: number;
-  readonly from: number;
-  readonly to: number;
-  readonly apex: number;
-  readonly turn: number; // [rad], left positive
 }
 
 /** The driven line of a lap in pieces, with what was lost on each [s]. */

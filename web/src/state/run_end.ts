@@ -12,9 +12,10 @@ export interface RunEnd {
   readonly why: string;
 }
 
-/** Attempts to connect after which a lost connection is more than a hiccup. */
+/** Attempts to reconnect up to which a lost connection is not called an end; chosen. */
 const HICCUPS = 3;
 
+/** The end of the run; null while it goes on, or for a recording. */
 export const runEnd = computed<RunEnd | null>(() => {
   const now = run.value;
   if (!now || now.mode === 'replay') return null;
@@ -30,6 +31,7 @@ export const runEnd = computed<RunEnd | null>(() => {
   };
 });
 
+/** Words for an end that the program reports. */
 function endOf(kind: string, reason: string): RunEnd {
   if (kind === 'finished') return { kind, severity: 'good', title: 'Finished', why: 'All laps that were asked for.' };
   if (kind === 'stopped') {

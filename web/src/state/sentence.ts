@@ -1,3 +1,4 @@
+// Words for pedal and solver, as they stand beside the numbers.
 import { fixed } from '../lib/format';
 import { type Sentence, statusInWords } from '../lib/words';
 import { REASON, RUNG, STATUS } from '../protocol/messages';
@@ -13,7 +14,7 @@ export function pedalInWords(throttle: number, fullBrake: number): string {
 /** The share of full braking that a negative throttle is. */
 export const brakeShare = (throttle: number, fullBrake: number): number => -throttle / (fullBrake > 0 ? fullBrake : 1);
 
-/** How the solve ended. A controller that is off its road has nothing to solve: that is no fault of a number. */
+/** How the solve ended. Without a road or measurements there is nothing to solve, and no number is wrong. */
 export function solverInWords(frame: Frame): Sentence {
   const isWithoutRoad = frame.is_off_track || frame.rung === RUNG.RETURN_TO_ROAD;
   if (frame.solve_status === STATUS.NOT_FINITE && isWithoutRoad)

@@ -1,4 +1,4 @@
-import { describe, expect, it } from 'vitest';
+import { expect, it } from 'vitest';
 import { settingsFound } from './setting_search';
 
 const entry = (key: string, meaning = '', unit = '') => ({ key, meaning, unit, group: '' });
@@ -10,9 +10,7 @@ const ALL = [
 ];
 const keys = (words: string) => settingsFound(ALL, words).map(({ key }) => key);
 
-describe('a search for settings', () => {
-  it('has the one that is called so first', () => {
-    expect(keys('latency')).toEqual(['latency_ms', 'delay.expected_ms']);
-    expect(keys('')).toHaveLength(4);
-  });
+it('a search for settings has the one that is called so first', () => {
+  expect(keys('latency')).toEqual(['latency_ms', 'delay.expected_ms']);
+  expect(keys('')).toHaveLength(4);
 });

@@ -1,8 +1,11 @@
+// Names of settings in words, and search by words.
 import { lastPart, nameInWords } from '../lib/words';
 import type { SchemaEntry } from '../protocol/schema';
 
+/** Texts of a setting that are searched. */
 type Described = Pick<SchemaEntry, 'key' | 'meaning' | 'group' | 'unit'>;
 
+/** Suffix of a key for each unit. */
 const SUFFIXES: Readonly<Record<string, string>> = {
   'm/s': 'mps',
   'm/s²': 'mps2',
@@ -26,7 +29,7 @@ export function labelOf({ key, unit }: Pick<SchemaEntry, 'key' | 'unit'>): strin
 
 const wordsOf = (text: string): string[] => text.toLowerCase().trim().split(/\s+/);
 
-/** Every word of the search must be in the name, meaning or unit. */
+/** Whether every word of the search is in the key, the meaning or the group. */
 function isFound(entry: Pick<Described, 'key' | 'meaning' | 'group'>, words: string): boolean {
   const text = `${entry.key} ${nameInWords(entry.key)} ${entry.meaning} ${entry.group}`.toLowerCase();
   return wordsOf(words).every((word) => text.includes(word));

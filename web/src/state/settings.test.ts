@@ -35,14 +35,6 @@ beforeEach(() => {
 });
 
 describe('requests', () => {
-  it('show at once, and stay when granted', async () => {
-    const { requests, asked } = server();
-    void requests.set('latency_ms', 150);
-    expect(settings.value.get('latency_ms')).toBe(150);
-    await asked[0]?.answer({ value: 150, sentence: null });
-    expect(settings.value.get('latency_ms')).toBe(150);
-  });
-
   it('snap back when refused, with the sentence until the next success', async () => {
     const { requests, asked } = server();
     void requests.set('latency_ms', 900);
@@ -54,7 +46,7 @@ describe('requests', () => {
     expect(refusals.value.size).toBe(0);
   });
 
-  it('never queue: of what comes while one is on its way only the newest follows', async () => {
+  it('show at once and never queue: of what comes while one is on its way only the newest follows', async () => {
     const { requests, asked } = server();
     for (const value of [110, 120, 130, 140]) void requests.set('latency_ms', value);
     expect(asked).toHaveLength(1);
@@ -95,37 +87,21 @@ describe('changes', () => {
 
 describe('the schema', () => {
   it('is read with care', () => {
+    const values = { minimum: 0, maximum: 1, choices: [], default: 0.5, start: 0.25 };
     const good = {
       key: 'a.b',
       group: 'a',
       kind: 'number',
       unit: 'm',
-      minimum: 0,
-      maximum: 1,
-      choices: [],
-      default: 0.5,
-      start: 0.25,
       meaning: 'x',
       is_live: true,
       is_fixed: true,
+      ...values,
     };
     expect(readSchema([good, null, 7, { key: 'x' }, { ...good, kind: 'matrix' }])).toEqual([good]);
-    expect(readSchema([{ key: 'a.b', kind: 'bool' }])).toEqual([
-      {
-        key: 'a.b',
-        group: 'a',
-        kind: 'bool',
-        unit: '',
-        minimum: null,
-        maximum: null,
-        choices: [],
-        default: null,
-        start: null,
-        meaning: '',
-        is_live: true,
-        is_fixed: false,
-      },
-    ]);
+    const unknown = { unit: '', minimum: null, maximum: null, choices: [], default: null, start: null, meaning: '' };
+    const least = { key: 'a.b', kind: 'bool' };
+    expect(readSchema([least])).toEqual([{ ...least, group: 'a', is_live: true, is_fixed: false, ...unknown }]);
     expect(readSchema({})).toEqual([]);
   });
 });

@@ -1,3 +1,4 @@
+// Settings of the run: schema, values in force, requests and refusals.
 import { computed } from '@preact/signals';
 import { refusalInWords } from '../lib/refusal';
 import { store } from '../lib/store';
@@ -15,11 +16,13 @@ export const startSettings = computed<ReadonlyMap<string, Setting>>(
 /** Why requests were refused, by key, until the same setting is changed again. */
 export const refusals = store.signal<ReadonlyMap<string, string>>('run', new Map());
 
+/** Description of a setting. */
 export const entryOf = (key: string): SchemaEntry | undefined => schema.value.find((entry) => entry.key === key);
 
 /** Controls of the page rather than settings of the experiment: not part of a preset or of the list of changes. */
 export const isControl = (key: string): boolean => /^(run|manual|fault)\./.test(key);
 
+/** A setting with its value before and after. */
 export interface SettingChange {
   readonly key: string;
   readonly from: Setting;
@@ -28,19 +31,13 @@ export interface SettingChange {
 
 /** The settings that differ from the start of the run, in the order of the schema. */
 export const settingChanges = computed<readonly SettingChange[]>(() =>
-  changesBetween(startSettings.value, settings.value).filter(({ key }) => !isControl(key)),
+  [...startSettings.value].flatMap(([key, from]) => {
+    const to = settings.value.get(key);
+    return to === undefined || Object.is(to, from) || isControl(key) ? [] : [{ key, from, to }];
+  }),
 );
 
-export function changesBetween(
-  start: ReadonlyMap<string, Setting>,
-  now: ReadonlyMap<string, Setting>,
-): SettingChange[] {
-  return [...start].flatMap(([key, from]) => {
-    const to = now.get(key);
-    return to === undefined || Object.is(to, from) ? [] : [{ key, from, to }];
-  });
-}
-
+/** A copy of a map with one entry changed, or removed where the value is undefined. */
 function withEntry<T>(map: ReadonlyMap<string, T>, key: string, value: T | undefined): ReadonlyMap<string, T> {
   const copy = new Map(map);
   if (value === undefined) copy.delete(key);

@@ -43,6 +43,9 @@ function describeRun(start: Record<string, Setting>): void {
   );
 }
 
+/** Drives the run that the link holds. */
+const drive = (): Promise<string[]> => driveShared(wanted.value?.run ?? { choices: new Map(), changes: new Map() });
+
 let asked: string[] = [];
 /** A program that takes everything but `refused`, and begins a chosen run at once. */
 function program(refused: readonly string[] = []): Source {
@@ -132,7 +135,7 @@ describe('a link to a run', () => {
     expect(commandOf(sharedNow.value)).toContain('--set guard.mode=off');
     wantedTexts.value = textsIn('#run?track=oval&guard.mode=observe&vehicle.friction=2.5');
     expect(wanted.value?.unknown).toEqual(['guard.mode', 'vehicle.friction']);
-    expect(await driveShared(wanted.value?.run ?? { choices: new Map(), changes: new Map() })).toEqual([]);
+    expect(await drive()).toEqual([]);
     expect(asked).toEqual(['/reset']);
   });
 
@@ -147,7 +150,7 @@ describe('driving the run of a link', () => {
     await requests.set('tracking_mpc.racing_line', true);
     asked = [];
     wantedTexts.value = textsIn('#run?latency_ms=60&control_period_ms=20&track=lakeside&car=udacity');
-    expect(await driveShared(wanted.value?.run ?? { choices: new Map(), changes: new Map() })).toEqual([]);
+    expect(await drive()).toEqual([]);
     expect(asked).toEqual([
       'track lakeside',
       'control_period_ms 20',
@@ -160,9 +163,7 @@ describe('driving the run of a link', () => {
   it('stops at a choice that is refused, with the sentence', async () => {
     attach(program(['track']));
     wantedTexts.value = textsIn('#run?track=%2Fetc%2Fpasswd&latency_ms=60');
-    expect(await driveShared(wanted.value?.run ?? { choices: new Map(), changes: new Map() })).toEqual([
-      'track: refused',
-    ]);
+    expect(await drive()).toEqual(['track: refused']);
     expect(asked).toEqual(['track /etc/passwd']);
   });
 });

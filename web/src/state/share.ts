@@ -4,15 +4,16 @@ import type { SchemaEntry } from '../protocol/schema';
 import type { Setting } from '../protocol/source';
 import { link } from './link';
 import { call, refresh, requests } from './operate';
-import { entryOf, isControl, refusals, schema, settings, startSettings } from './settings';
+import { pause } from './program_page';
+import { entryOf, isControl, refusals, type SettingChange, schema, settings, startSettings } from './settings';
 
 // A link that holds a run: track, car, preset, controller, seed, and what differs from what these give. It lies in the
 // fragment of the address, which browsers send to no server, and it is followed by the settings' own requests, so that
 // the program checks each value as it checks one that is typed. Names only: a file of one machine is none of another.
 
-/** What makes a run, in the order in which it is chosen: a preset brings its controller. */
+/** Settings that choose a run, in the order in which they are set: a preset brings its controller. */
 const CHOICES = ['track', 'car', 'preset', 'controller', 'seed'] as const;
-/** How long a run lasts is not what it is. */
+/** Settings that are no changes of a link: the choices, and how long a run lasts. */
 const NOT_SHARED = new Set<string>([...CHOICES, 'laps', 'time_limit_s']);
 const PREFIX = '#run?';
 
@@ -22,10 +23,11 @@ export interface SharedRun {
   readonly changes: ReadonlyMap<string, Setting>;
 }
 
+/** Whether a setting is a change of a run. */
 const isOfRun = ({ key, kind }: SchemaEntry): boolean => !isControl(key) && !NOT_SHARED.has(key) && kind !== 'text';
 const isShared = (entry: SchemaEntry): boolean => isOfRun(entry) && !entry.is_fixed;
 
-/** What the chosen preset gives with the chosen car. */
+/** Value that the chosen preset gives to a setting with the chosen car. */
 const givenBy = (entry: SchemaEntry): Setting => entry.default ?? 'inf';
 
 /** The run that goes on. */
@@ -52,8 +54,7 @@ export const fixedChanges = computed<readonly string[]>(() =>
 /** The choices that are files, which a link cannot name. */
 export const filesChosen = computed<readonly string[]>(() =>
   (['track', 'car', 'preset'] as const).filter((key) => {
-    const value = settings.value.get(key);
-    const entry = schema.value.find((each) => each.key === key);
+    const [value, entry] = [settings.value.get(key), entryOf(key)];
     return value !== undefined && entry !== undefined && !entry.choices.includes(String(value));
   }),
 );
@@ -68,11 +69,12 @@ export function linkTo({ choices, changes }: SharedRun, page: string): string {
 /** Name by which the program was started: "./run.sh", where that started it. */
 export const programName = store.signal('page', 'chicane');
 
+/** A value as a word of the shell. */
 const quoted = (value: Setting): string => (/^[\w.+-]+$/.test(String(value)) ? String(value) : `'${value}'`);
 
 /** The command that begins a run. It names a controller only where that is not the preset's. */
 export function commandOf({ choices, changes }: SharedRun): string {
-  const given = schema.value.find(({ key }) => key === 'controller')?.default;
+  const given = entryOf('controller')?.default;
   const isTold = (key: string, value: Setting): boolean =>
     key === 'controller' ? value !== given : key === 'seed' ? value !== 1 : true;
   const words = [`${programName.value} drive`];
@@ -90,7 +92,7 @@ export interface DrivenWith {
   readonly pace: number;
   readonly port: number;
 }
-const USUAL_PORT = 4567;
+const USUAL_PORT = 4567; // of the program
 
 /** The command that drives the whole run once more, on the same page. */
 export function commandAgain(shared: SharedRun, { laps, pace, port }: DrivenWith): string {
@@ -101,25 +103,25 @@ export function commandAgain(shared: SharedRun, { laps, pace, port }: DrivenWith
   return words.join(' ');
 }
 
-/** The value that a text stands for; the program says so if it is none of that setting. */
+/** Value that a text stands for; the program refuses one that the setting cannot have. */
 function meant(text: string, entry: SchemaEntry | undefined): Setting {
   if (entry?.kind === 'bool' && /^(true|false)$/.test(text)) return text === 'true';
   const isNumber = entry?.kind === 'number' || entry?.kind === 'integer';
   return isNumber && text.trim() !== '' && Number.isFinite(Number(text)) ? Number(text) : text;
 }
 
-/** What the fragment of an address holds; null when it is no run. */
+/** Keys and texts in the fragment of an address; null when it is no link to a run. */
 export function textsIn(fragment: string): ReadonlyMap<string, string> | null {
   return fragment.startsWith(PREFIX) ? new Map(new URLSearchParams(fragment.slice(PREFIX.length))) : null;
 }
 
-/** What the address asked for, until the reader has answered. */
+/** Keys and texts of the link that was opened, until the user has answered; null: none. */
 export const wantedTexts = store.signal<ReadonlyMap<string, string> | null>('page', null);
 
+/** The run of a link, compared with the run that goes on. */
 export interface Wanted {
   readonly run: SharedRun;
-  /** What would be another than now. */
-  readonly differences: readonly { readonly key: string; readonly from: Setting; readonly to: Setting }[];
+  readonly differences: readonly SettingChange[];
   /** Keys that this program does not know, or does not take from a link. */
   readonly unknown: readonly string[];
 }
@@ -132,7 +134,7 @@ export const wanted = computed<Wanted | null>(() => {
   const changes = new Map<string, Setting>();
   const unknown: string[] = [];
   for (const [key, text] of texts) {
-    const entry = schema.value.find((each) => each.key === key);
+    const entry = entryOf(key);
     const isChoice = (CHOICES as readonly string[]).includes(key);
     if (!entry || !(isChoice || isShared(entry))) unknown.push(key);
     else (isChoice ? choices : changes).set(key, meant(text, entry));
@@ -144,16 +146,14 @@ export const wanted = computed<Wanted | null>(() => {
   });
   for (const entry of schema.value.filter(isShared)) {
     const from = settings.value.get(entry.key);
-    // With another preset or car the rest is what those give.
+    // With another preset or car all other settings are what these give.
     const to = changes.get(entry.key) ?? (differences.length === 0 ? givenBy(entry) : from);
     if (from !== undefined && to !== undefined && !Object.is(from, to)) differences.push({ key: entry.key, from, to });
   }
   return { run: { choices, changes }, differences, unknown };
 });
 
-const pause = (milliseconds: number): Promise<void> => new Promise((resolve) => setTimeout(resolve, milliseconds));
-
-/** Waits until the run that was chosen goes on; false when another one does. */
+/** Waits until the run that was chosen drives; false when another one does. */
 async function hasBegun(chosen: ReadonlyMap<string, Setting>): Promise<boolean> {
   for (;;) {
     const isWanted = [...chosen].every(([key, value]) => settings.value.get(key) === value);

@@ -1,4 +1,2 @@
-/**
- * Between frames further apart than this, in time of the run, nothing is drawn or interpolated [s].
- */
+/** Time of the run between two frames beyond which nothing is drawn or interpolated between them [s]; chosen. */
 export const LONGEST_SILENCE_S = 1;

@@ -3,13 +3,15 @@ import type { Sentence } from '../lib/words';
 import { type Frame, type Situation, timeOf } from '../protocol/topics';
 import { REPLAY_S } from './replay';
 
-// What the program says of the run in each control cycle. The page shows it, and decides nothing.
+// The situation of the run in each control cycle, as the program words it; the page only shows it.
 
-/** Of the frame that the page's text shows; null before the program has said anything. */
+/** The situation of the frame that the page's text shows; null before the program has sent one. */
 export const situation = store.signal<Situation | null>('run', null);
 
-const MOST_KEPT = 1200;
-/** An alarm stays for so long after its last cycle, as the program counts events (telemetry::kAlarmPause) [s]. */
+const MOST_KEPT = 1200; // chosen
+/**
+ * Time for which an alarm stays after its last cycle [s]: that of telemetry::kAlarmPause, by which events are counted.
+ */
 const ALARM_HELD_S = 1;
 const kept = store.data('moment', () => ({ recent: [] as Situation[] }));
 
@@ -23,8 +25,8 @@ export function receiveSituation(message: Situation): void {
 }
 
 /**
- * Shows the one of a frame; without one yet, the newest before it. An event is one alarm, also where the guard stops
- * the car and lets it go in turn; who takes the wheel ends it.
+ * Shows the situation of a frame, else the newest one before it. An alarm stays for ALARM_HELD_S: a guard that stops
+ * and releases the car in turn raises one alarm. Driving by hand ends it.
  */
 export function showSituation(frame: Frame | null): void {
   const time = (frame?.time_s ?? NaN) + 1e-6;

@@ -1,3 +1,4 @@
+// State of the run in the header: its word, the one button that Space presses, and remarks on what is unusual.
 import { computed } from '@preact/signals';
 import { tidy } from '../lib/scale';
 import { faultsInWords } from './faults';
@@ -8,8 +9,6 @@ import { isPaused, run } from './run';
 import { runEnd } from './run_end';
 import { settings } from './settings';
 import { behind, shown, silence } from './shown';
-
-// What the header says of the run, and the one button that Space presses.
 
 /** The state of the run in one or two words. */
 export const stateWord = computed<string>(() => {
@@ -37,6 +36,7 @@ export interface OneButton {
   act(): void;
 }
 
+/** The button of the header, by the state of the run. */
 export const oneButton = computed<OneButton | null>(() => {
   if (replayLeft.value !== null) return { label: 'End the replay', isPossible: true, act: endReplay };
   if (link.value === 'lost') return { label: 'Connect now', isPossible: true, act: retry };
@@ -55,10 +55,10 @@ export const oneButton = computed<OneButton | null>(() => {
   return { label, isPossible: can('/pause'), act: () => call('/pause', !isPaused.value) };
 });
 
-/** So many frames come within a moment on any line but a slow one. */
+/** Frames of the past still to come above which they are mentioned: fewer come within a moment; chosen. */
 const SOON = 400;
 
-/** What is not normal, in a few words each; of a run that is watched or shown again. */
+/** Remarks on what is not normal in the run, in a few words each. */
 export const pills = computed<readonly string[]>(() => {
   if (link.value === 'lost') return [];
   const frame = shown.value;

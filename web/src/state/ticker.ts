@@ -1,10 +1,14 @@
+// The one drawing loop of the page.
 import { store } from '../lib/store';
 
+/** Work at a repaint; `now` as of performance.now() [ms]. */
 type Task = (now: number) => void;
 
 const tasks = new Set<Task>();
+/** Whether a repaint is requested. */
 const loop = store.data('page', () => ({ isRunning: false }));
 
+/** Runs all tasks, and requests the next repaint as long as there are any. */
 function turn(now: number): void {
   for (const task of tasks) task(now);
   if (tasks.size > 0) requestAnimationFrame(turn);

@@ -1,3 +1,4 @@
+// Progress of the tour that is taken: its step, and which tasks of the step are done.
 import { computed } from '@preact/signals';
 import { persisted } from '../lib/persisted';
 import { store } from '../lib/store';
@@ -7,35 +8,38 @@ import { frameListeners, restartListeners } from './demultiplexer';
 import { EFFECTS_TOUR } from './effects_tour';
 import type { Step, Tour, Watch } from './tour_step';
 
-// Tours for newcomers: things to do, one after the other.
-
+/** All tours, in the order of their list. */
 export const TOURS: readonly Tour[] = [EFFECTS_TOUR, DASHBOARD_TOUR];
 
 /** The tour that is taken; empty: none is chosen. */
 const tourName = persisted<string>('tour.name', '');
 export const tour = computed<Tour | null>(() => TOURS.find(({ name }) => name === tourName.value) ?? null);
-/** The step that is shown or will be gone on with; the number of steps: all are behind. Kept by the browser. */
+/** Index of the current step; the number of steps when all are done. Kept by the browser. */
 export const stepNumber = persisted<number>(
   'tour.step',
   0,
   (value) => Number.isInteger(value) && Number(value) >= 0 && Number(value) <= (tour.value?.steps.length ?? 0),
 );
+/** Whether the tour is shown; kept by the browser. */
 export const isTourOpen = persisted<boolean>('tour.open', false);
-/** Steps that were left out. */
+/** Names of the steps that were skipped. */
 const left = persisted<string>('tour.skipped', '');
 export const skipped = computed<readonly string[]>(() => left.value.split(',').filter((name) => name !== ''));
 
+/** The current step; null at the end. */
 export const step = computed<Step | null>(() => tour.value?.steps[stepNumber.value] ?? null);
 /** For each task of the step whether it is done. */
 export const done = store.signal<readonly boolean[]>('page', []);
 export const isStepDone = computed(() => done.value.length > 0 && done.value.every(Boolean));
 
+/** The step that is watched, and the time of the newest frame [s]. */
 const watching = store.data('page', () => ({
   watch: null as Watch | null,
   step: null as Step | null,
   lastTime: NaN,
 }));
 
+/** Begins to watch the current step. */
 function begin(): void {
   watching.step = step.value;
   watching.watch = step.value?.watch() ?? null;
@@ -58,6 +62,7 @@ export function chooseTour(name: string): void {
   begin();
 }
 
+/** Closes the tour, to be gone on with. */
 export function leaveTour(): void {
   isTourOpen.value = false;
 }
@@ -69,7 +74,7 @@ export function goOn(): void {
   begin();
 }
 
-/** Looks at a frame of the run. */
+/** Marks the tasks that a frame shows to be done. */
 export function lookAt(frame: Frame): void {
   if (!isTourOpen.value || !step.value) return;
   if (watching.step !== step.value) begin(); // the page was opened in the middle of a tour

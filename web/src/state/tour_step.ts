@@ -3,11 +3,12 @@ import { services } from './link';
 import type { Mode } from './mode';
 import { answer } from './what_if';
 
-// What a tour is made of. What was done is read from the run, not from clicks.
+// Parts of a tour. Whether a task is done is read from the run, not from clicks.
 
 /** Says for each task of a step whether this frame shows that it is done; `seconds` since the frame before. */
 export type Watch = (frame: Frame, seconds: number) => readonly boolean[];
 
+/** A step of a tour. */
 export interface Step {
   readonly name: string;
   readonly title: string;
@@ -25,6 +26,7 @@ export interface Step {
   watch(): Watch;
 }
 
+/** A tour. */
 export interface Tour {
   readonly name: string;
   readonly title: string;
@@ -33,12 +35,13 @@ export interface Tour {
   readonly end: string;
 }
 
-const MOVING_MPS = 3;
+const MOVING_MPS = 3; // chosen
 
+/** Whether the controller drives the car, on the road. */
 export const isDriving = (frame: Frame): boolean =>
   !frame.is_manual && frame.rung === 0 && !frame.is_off_track && frame.speed_mps > MOVING_MPS;
 
-/** A question to What if: done when an answer came. */
+/** A step that asks What if; done when an answer comes. */
 export const compareStep = (name: string, title: string, text: string): Step => ({
   name,
   title,

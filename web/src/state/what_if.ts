@@ -1,3 +1,4 @@
+// Question for another future of the run ("what if"): its moment, length and settings, and the answer.
 import { effect } from '@preact/signals';
 import { refusalInWords } from '../lib/refusal';
 import { valueInWords } from '../lib/scale';
@@ -9,16 +10,14 @@ import { restartListeners } from './demultiplexer';
 import { live } from './live';
 import { ask as askRun, can } from './operate';
 import { cursorTime } from './plot_view';
-import { programPage } from './program_page';
+import { pause, programPage } from './program_page';
 import { run } from './run';
 import { isControl, schema, settings } from './settings';
 import { readWhatIf, type WhatIfAnswer } from './what_if_answer';
 
-// "What if": another future of the run, from a moment on, with other settings.
-
-/** From when: now, where the cursor stands, or the line that this lap began with. */
+/** Moment from which both futures are driven: now, that of the cursor, or the beginning of this lap. */
 export type From = 'now' | 'cursor' | 'line';
-/** For how long: seconds, or a whole lap. */
+/** Length of the futures: seconds, or a whole lap. */
 export type Span = '10' | '30' | 'lap';
 
 /** A setting that is changed in the question; the text as typed. */
@@ -27,11 +26,12 @@ export interface ChosenSetting {
   readonly value: Setting;
 }
 
+/** The question: its moment, its length, and the changed settings. */
 export const from = store.signal<From>('page', 'now');
 export const span = store.signal<Span>('page', 'lap');
 export const chosenSettings = store.signal<readonly ChosenSetting[]>('page', []);
 
-/** The newest answer, and what it was asked. */
+/** The newest answer, and the settings that it was asked with. */
 export const answer = store.signal<WhatIfAnswer | null>('page', null);
 export const asked = store.signal<readonly ChosenSetting[]>('page', []);
 /** The share that is computed; null when nothing is. */
@@ -39,7 +39,7 @@ export const progress = store.signal<number | null>('page', null);
 /** Why there is no answer; empty when nothing is wrong. */
 export const problem = store.signal('page', '');
 
-/** A recording that is shown, for which the program answers; null in a live run. */
+/** A recording that is shown, about which the program answers questions. */
 export interface AskedLog {
   /** Number of the recording. */
   which(): number;
@@ -47,10 +47,12 @@ export interface AskedLog {
   position(): number;
   ask(question: string): Promise<AskAnswer>;
 }
+/** The recording that questions are about; null in a live run. */
 export const askedLog = store.signal<AskedLog | null>('page', null);
 /** The settings of the recording that is shown; a live run has its own. */
 export const loggedSchema = store.signal<readonly SchemaEntry[]>('page', []);
 
+/** Whether the program answers questions now. */
 export const canAsk = (): boolean => askedLog.value !== null || can('/what_if');
 
 /** The settings that may change while a run goes on. */
@@ -86,8 +88,8 @@ export function question(): string {
   });
 }
 
-const pause = (ms: number): Promise<void> => new Promise((resolve) => setTimeout(resolve, ms));
-const POLL_MS = 150;
+const POLL_MS = 150; // chosen
+/** Number of the newest question here, and the run that it is about. */
 const asking = store.data('page', () => ({ newest: 0, run: '' }));
 
 /** Waits for the answer of a question by its number. */
@@ -125,7 +127,7 @@ export async function ask(): Promise<void> {
   }
 }
 
-/** What both futures are called: "as it is", and what was changed. */
+/** Names of both futures: "as it is", and the changes. */
 export function futureNames(): readonly [string, string] {
   const [first, ...others] = asked.value;
   if (!first) return ['as it is', 'what if'];

@@ -5,6 +5,7 @@ import type { LapChannel } from './lap_samples';
 
 // Two futures of a run from one moment on, as GET /what_if.json gives them (docs/viewer.md).
 
+/** Columns of a future. */
 export const TRACE_COLUMNS = [
   'time_s',
   'distance_m',
@@ -25,7 +26,7 @@ type Future = Readonly<ReturnType<typeof readFuture>>;
 
 export type WhatIfAnswer = Readonly<ReturnType<typeof readAnswer>>;
 
-/** What the program says of a question: being computed, answered, or failed. */
+/** State of a question: being computed, answered, or failed. */
 export type WhatIfState =
   | { readonly kind: 'computing'; readonly id: number; readonly share: number }
   | { readonly kind: 'failed'; readonly id: number; readonly why: string }
@@ -42,13 +43,13 @@ const readFuture = ({ min_edge_distance_m, interventions, passages, trace }: Fie
 });
 
 /**
- * The simulator of ours that stood in for a car that another program simulates: so long before the moment it drove from
- * the same place, to be compared [s], and came so far from the car that was driven [m]. Null where the run's own car
- * drove both futures.
+ * Our simulator, used in place of the car of an external simulator: it drove the last `compared` seconds before the
+ * moment again, and came `apart` metres from the car. Null where the run's own car drove both futures.
  */
 const readStandIn = ({ plant, compared_s, apart_m }: Fields) =>
   typeof plant === 'string' ? { plant, compared: number(compared_s), apart: number(apart_m) } : null;
 
+/** Reads an answer. */
 const readAnswer = (all: Fields) => ({
   at: number(all.at_s), // the moment of the branch, on the run's time line [s]
   isExact: all.is_exact === true, // the run came out the same, bit for bit, when it was computed again
@@ -88,7 +89,7 @@ export interface FutureGrid {
 const isColumn = (name: string): name is TraceColumn & LapChannel =>
   (TRACE_COLUMNS as readonly string[]).includes(name);
 
-/** When a future comes to the end of its n-th lap, since the branch [s]; 0: the branch. */
+/** Time since the branch at which a future ends a lap [s]; not-a-number where it does not. */
 const endOf = ({ passages }: Future, lap: number): number =>
   passages.find((each) => each.lap === lap && each.sector === 3)?.time ?? NaN;
 
@@ -140,7 +141,9 @@ export function futureCourses(
   });
 }
 
-/** Whose car drove both futures, and how far it is to be trusted, for a car that another program simulates. */
+/**
+ * Sentences on our simulator in place of an external one: that it drove both futures, and how far it is to be trusted.
+ */
 export function trustOf({ plant, compared, apart }: NonNullable<WhatIfAnswer['standIn']>): string {
   const whose = `Both futures are driven by our own car (${plant}), from where your simulator's car was.`;
   if (!(compared >= 1)) return `${whose} The run is too young to say how well it stands in.`;
@@ -148,7 +151,7 @@ export function trustOf({ plant, compared, apart }: NonNullable<WhatIfAnswer['st
   return `${whose} ${over}, it came up to ${apart.toFixed(2)} m from yours.`;
 }
 
-/** What the change comes to, in one sentence; `gap`: how much later the second future is at the end [s]. */
+/** Effect of the change in one sentence; `gap`: time by which the second future is later at the end [s]. */
 export function verdictOf({ was, branch }: WhatIfAnswer, gap: number): string {
   const pace =
     Math.abs(gap) < 0.005

@@ -1,3 +1,4 @@
+// View of Drive both: the question, its progress, and the answer with what can be done with it.
 import { lapTime } from '../lib/format';
 import { store } from '../lib/store';
 import { Button, Refusal, Select } from '../parts/controls';
@@ -30,10 +31,10 @@ import {
 } from '../state/what_if';
 import { trustOf, verdictOf } from '../state/what_if_answer';
 
-// *Drive both*: another future of the run, from a moment on, beside the one that is.
-
+/** The settings of the answer that the run has kept. */
 const kept = store.signal<readonly ChosenSetting[] | null>('page', null);
 
+/** Whether both futures can be driven. */
 export const canDriveBoth = (): boolean => offered().length > 0 && canAsk();
 
 const SPANS: readonly { value: Span; label: string }[] = [
@@ -63,12 +64,14 @@ export function WhenView() {
   );
 }
 
+/** Asks for both futures. */
 function driveBoth(): void {
   kept.value = null;
   chosenSettings.value = toAsk.value;
   void ask();
 }
 
+/** The button that asks, or the progress of the answer. */
 export function DriveBothButton() {
   const share = progress.value;
   const isReady = toAsk.value.length > 0 && canDriveBoth();
@@ -92,11 +95,13 @@ export function DriveBothButton() {
   );
 }
 
+/** Lets the run go on with the settings of the answer. */
 function keep(): void {
   for (const { key, value } of asked.value) if (canSet(key)) set(key, value);
   kept.value = asked.value;
 }
 
+/** Changes in words: "latency 60". */
 const changesInWords = (all: readonly ChosenSetting[]): string =>
   all.map(({ key, value }) => `${labelOf({ key, unit: entryOf(key)?.unit ?? '' })} ${value}`).join(', ');
 

@@ -1,3 +1,4 @@
+// State of controller, solver, gate and road, in words.
 import { plural, UNKNOWN } from '../lib/format';
 import { gateInWords, roadInWords, type Sentence, sightInWords, worstInWords } from '../lib/words';
 import { Sign } from '../parts/controls';
@@ -7,6 +8,7 @@ import { solverInWords } from '../state/sentence';
 import { shown } from '../state/shown';
 import { situation, situationInWords } from '../state/situation';
 
+/** A label with a sentence. */
 function Row({ label, sentence, id }: { label: string; sentence: Sentence | null; id: string }) {
   return (
     <div>
@@ -19,11 +21,13 @@ function Row({ label, sentence, id }: { label: string; sentence: Sentence | null
   );
 }
 
+/** The constraint that is violated most, in words. */
 function constraints(solved: Frame): Sentence {
   const worst = worstInWords(solved, run.value?.constraint_names ?? []);
   return worst ? { severity: 'warning', text: worst } : { severity: 'good', text: 'All constraints hold' };
 }
 
+/** How the solve ended, in words. */
 function solver(solved: Frame): Sentence {
   const { severity, text } = solverInWords(solved);
   return { severity, text: solved.iterations > 0 ? `${text}, ${plural(solved.iterations, 'iteration')}` : text };

@@ -1,7 +1,8 @@
+// A text with a button that copies it.
 import { store } from '../lib/store';
 import { Button } from '../parts/controls';
 
-/** Where browsers allow no clipboard (addresses without TLS that are not this machine), the text is selected. */
+/** Copies a text; where browsers allow no clipboard (other machines without TLS), the text is selected. */
 function copy(field: HTMLInputElement | null, said: (text: string) => void): void {
   if (!field) return;
   field.select();
@@ -12,6 +13,7 @@ function copy(field: HTMLInputElement | null, said: (text: string) => void): voi
   );
 }
 
+/** Result of the last copy, and which field it is about. */
 const said = store.signal<{ readonly id: string; readonly text: string } | null>('page', null);
 
 /** A text in a field, with a button that copies it. */
@@ -37,6 +39,7 @@ export function Copied({ id, label, text }: { id: string; label: string; text: s
   );
 }
 
+/** Clears the result of the last copy. */
 export const forgetCopied = (): void => {
   said.value = null;
 };

@@ -1,3 +1,4 @@
+// What solver and controller did: plots over time, limits of the speed, constraints, estimates, events.
 import { hasBit } from '../lib/bits';
 import { fixed } from '../lib/format';
 import { LIMITERS, nameInWords } from '../lib/words';
@@ -12,7 +13,7 @@ import { ControllerView } from './controller_view';
 import { EventsView } from './events_view';
 import { PlotsView } from './plots_view';
 
-const WINDOW_S = 20;
+const WINDOW_S = 20; // over which shares are taken; chosen
 
 /** A share as a bar and in figures. */
 function Share({ share }: { share: number }) {
@@ -26,6 +27,7 @@ function Share({ share }: { share: number }) {
   );
 }
 
+/** Shares of time in which each limit held the speed. */
 function Limiters() {
   void shown.value;
   const rows = LIMITERS.map((short, i) => ({
@@ -51,6 +53,7 @@ function Limiters() {
   );
 }
 
+/** The controller's constraints: active now, ahead, and in shares of time. */
 function Constraints() {
   const names = run.value?.constraint_names ?? [];
   const frame = shown.value;

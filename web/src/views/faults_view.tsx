@@ -1,3 +1,4 @@
+// Faults of the run: buttons that inject them, their duration and strength, and the answer of the guard.
 import { computed } from '@preact/signals';
 import { hasBit } from '../lib/bits';
 import { fixed } from '../lib/format';
@@ -18,6 +19,7 @@ import { DraftBox } from './draft_box';
 import { EventsView } from './events_view';
 import { typed } from './setting_row';
 
+/** A fault that can be injected. */
 export interface Fault {
   readonly key: string; // "fault.link_lost"
   readonly name: string;
@@ -26,6 +28,7 @@ export interface Fault {
   readonly entry: FaultEntry | undefined;
 }
 
+/** Groups of faults, in the order of their table. */
 const GROUPS: readonly { readonly name: string; readonly title: string }[] = [
   { name: 'sensor', title: 'Sensors' },
   { name: 'link', title: 'Link' },
@@ -35,21 +38,23 @@ const GROUPS: readonly { readonly name: string; readonly title: string }[] = [
   { name: '', title: 'Others' },
 ];
 
-/** Duration that the page asks for by default [s]: shorter faults end before anybody has seen them. */
+/** Least duration that the page asks for by itself [s]: shorter faults end before anybody sees them; chosen. */
 const LEAST_S = 3;
-const DURATIONS_S = [0.1, 600] as const;
+const DURATIONS_S = [0.1, 600] as const; // that can be typed; chosen
 
-/** Duration and strength chosen here, by key. */
+/** Duration [s] and strength of faults as chosen here, by key. */
 const chosen = store.signal<ReadonlyMap<string, { readonly duration: number; readonly strength: number }>>(
   'page',
   new Map(),
 );
 
+/** Duration [s] and strength of a fault as chosen, else as they are by default. */
 const choiceOf = (key: string, entry: FaultEntry): { duration: number; strength: number } =>
   chosen.value.get(key) ?? { duration: Math.max(LEAST_S, entry.duration_s), strength: entry.strength };
 
 type Choice = { readonly duration?: number | undefined; readonly strength?: number | undefined };
 
+/** Changes duration or strength. */
 function choose(key: string, entry: FaultEntry, { duration, strength }: Choice): void {
   const before = choiceOf(key, entry);
   const now = { duration: duration ?? before.duration, strength: strength ?? before.strength };
@@ -95,6 +100,7 @@ function numberIn(text: string, least: number, most: number): number | undefined
   return typeof value === 'number' ? clamp(value, least, most) : undefined;
 }
 
+/** Duration and strength of a fault, to be typed. */
 function Parameters({ fault: { key, name }, entry }: { fault: Fault; entry: FaultEntry }) {
   const { duration, strength } = choiceOf(key, entry);
   const box = (label: string, value: number, choice: (text: string) => Choice) => (
@@ -126,10 +132,11 @@ function Parameters({ fault: { key, name }, entry }: { fault: Fault; entry: Faul
   );
 }
 
-/** The first of them are shown as words to press; the others on request. */
+/** Faults that are shown as buttons at first; all others on request. */
 const FIRST = ['half_grip', 'ice_patch', 'side_wind', 'weak_brakes', 'link_lost', 'steering_stuck', 'dead_controller'];
 const showsAll = store.signal('page', false);
 
+/** Button that injects a fault, or ends it. */
 function FaultButton({ fault }: { fault: Fault }) {
   const { key, name, meaning, isActive } = fault;
   const left = isActive ? secondsLeft(key, shown.value?.time_s ?? NaN) : NaN;
@@ -174,6 +181,7 @@ function FaultTable({ all }: { all: readonly Fault[] }) {
   );
 }
 
+/** Faults, what is done about them, and the events of the run. */
 export function FaultsView() {
   const all = allFaults.value;
   const active = all.filter(({ isActive }) => isActive);

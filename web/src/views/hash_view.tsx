@@ -1,13 +1,15 @@
+// Hash of the states of a finished run, for the page that needs no program.
 import { useEffect, useState } from 'preact/hooks';
 import { programPage } from '../state/program_page';
 import { commandOf, sharedNow } from '../state/share';
 
+/** End of a run as /run.json describes it. */
 interface Ended {
   readonly state_hash: string | null;
   readonly arithmetic: string;
 }
 
-/** With what the run of a page without a program is compared: the hash of its states, and the command that gives it. */
+/** Hash of the states of the run, and the command of the program that gives the same. */
 export function HashView() {
   const [ended, setEnded] = useState<Ended | null>(null);
   useEffect(() => {

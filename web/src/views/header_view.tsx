@@ -1,3 +1,4 @@
+// Header of the page: menu, run, modes, state, the one button; and notices below it.
 import { fixed } from '../lib/format';
 import { Button } from '../parts/controls';
 import { link, notice } from '../state/link';
@@ -8,8 +9,10 @@ import { guardInWords, run } from '../state/run';
 import { oneButton, pills, stateWord } from '../state/stage_state';
 import { MenuView } from './menu_view';
 
+/** Names of the modes. */
 export const TITLES: Readonly<Record<Mode, string>> = { watch: 'Watch', understand: 'Understand', try: 'Try' };
 
+/** Car, track and preset; all that is driven as its hint. */
 function RunSummary() {
   const now = run.value;
   if (!now) return <p class="run">Waiting for a run</p>;
@@ -28,6 +31,7 @@ function RunSummary() {
   );
 }
 
+/** Buttons of the modes. */
 function Modes() {
   return (
     <nav class="modes" aria-label="Modes">
@@ -83,6 +87,7 @@ function Notes() {
   );
 }
 
+/** The header and its notices. */
 export function HeaderView() {
   return (
     <>

@@ -1,3 +1,4 @@
+// Modal dialogs, and the one that lists the keys.
 import { useLayoutEffect, useRef } from 'preact/hooks';
 import { allShortcuts, GROUPS } from '../lib/keys';
 import { store } from '../lib/store';
@@ -8,6 +9,7 @@ export const openHelp = (): void => {
   isHelpOpen.value = true;
 };
 
+/** Properties of a dialog. */
 interface DialogOptions {
   readonly isOpen: boolean;
   readonly title: string;
@@ -21,7 +23,7 @@ interface DialogOptions {
 /** A modal dialog, with the browser's handling of focus and Escape. */
 export function Dialog({ isOpen, title, onClose, close = 'Close', answer, children }: DialogOptions) {
   const element = useRef<HTMLDialogElement>(null);
-  // With the page, not after its next picture: keys pressed in between would still be the dialog's.
+  // In the same turn as the page: keys that are pressed before its next picture would still be the dialog's.
   useLayoutEffect(() => {
     const dialog = element.current;
     if (!dialog) return;
@@ -57,6 +59,7 @@ export function Dialog({ isOpen, title, onClose, close = 'Close', answer, childr
   );
 }
 
+/** Dialog of all keys, and of how other viewers connect. */
 export function HelpView() {
   const close = (): void => {
     isHelpOpen.value = false;

@@ -1,3 +1,4 @@
+// Driving by hand: listens to keys and gamepad, sends the stick, and draws the pad for a finger.
 import { effect } from '@preact/signals';
 import { useRef } from 'preact/hooks';
 import { isTakenBy } from '../lib/keys';
@@ -11,11 +12,14 @@ import { canSet, set } from '../state/operate';
 import { settings } from '../state/settings';
 import { everyFrame } from '../state/ticker';
 
-const RATE_HZ = 30;
-const REMIND_MS = 250; // the program ends driving by hand after a second without a message
+const RATE_HZ = 30; // of the stick; chosen
+/** Time after which a still stick is sent again: the program ends driving by hand after a second without a message. */
+const REMIND_MS = 250;
 
+/** Whether a person drives. */
 export const isManual = (): boolean => settings.value.get('manual.is_on') === true;
 
+/** Takes the wheel, or hands it back. */
 export function toggleManual(): void {
   if (!canSet('manual.is_on')) return;
   set('manual.is_on', !isManual());
@@ -73,6 +77,7 @@ export function listenToDriver(): void {
   });
 }
 
+/** Whether a gamepad is connected, and its Start button was pressed. */
 const gamepad = store.data('page', () => ({ isThere: false, wasStartPressed: false }));
 
 /** Start takes the wheel and hands it back. */

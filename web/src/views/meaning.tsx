@@ -2,9 +2,9 @@ import type { ComponentChildren } from 'preact';
 import { useId } from 'preact/hooks';
 
 const WIDTH_PX = 320; // of the box, as in the style sheet
-const ROOM_PX = 180; // below the name; with less the box is above it
+const ROOM_PX = 180; // below the name: with less the box is above it; chosen
 
-/** Beside its name, inside the window. */
+/** Places a box below its name, or above it, inside the window. */
 function place(box: HTMLElement, name: Element | null): void {
   const at = name?.getBoundingClientRect();
   if (!at) return;

@@ -1,7 +1,9 @@
+// Menu of the page, behind the name of the program.
 import type { ComponentChildren } from 'preact';
 import { useRef } from 'preact/hooks';
 import { scheme, toggleScheme } from '../lib/appearance';
 import { download } from '../lib/download';
+import { clamp } from '../lib/math';
 import { nextSpeedUnit, speedUnit } from '../lib/units';
 import { Button } from '../parts/controls';
 import { services } from '../state/link';
@@ -15,12 +17,15 @@ import { isManual, toggleManual } from './manual_view';
 import { openShare } from './share_view';
 import { isTourOffered, openTourHere, tourLabel } from './tour_view';
 
-const PACES = [0.25, 1, 4] as const;
+const PACES = [0.25, 1, 4] as const; // chosen
+/** Bounds of the pace: those of the program's run.pace. */
+const [LEAST_PACE, MOST_PACE] = [0.05, 20];
 
+/** Multiplies the pace of the run. */
 export function changePace(factor: number): void {
   const pace = settings.value.get('run.pace');
   if (typeof pace !== 'number' || !canSet('run.pace')) return;
-  set('run.pace', Math.min(20, Math.max(0.05, Number((pace * factor).toPrecision(3)))));
+  set('run.pace', clamp(Number((pace * factor).toPrecision(3)), LEAST_PACE, MOST_PACE));
 }
 
 /** The stage on the whole screen, where the browser allows it; and back. */
@@ -30,14 +35,14 @@ export function present(): void {
   else void document.documentElement.requestFullscreen?.().catch(() => undefined);
 }
 
-/** Where no program answers the link. */
+/** Saves the preset where no program answers its link. */
 function savePreset(event: Event): void {
   if (!__PAGE__) return;
   event.preventDefault();
   void programPage('preset.yaml').then((text) => text !== null && download('my-preset.yaml', text));
 }
 
-/** Everything that is seldom wanted, behind the name of the program. */
+/** The menu: what is seldom wanted. */
 export function MenuView() {
   const box = useRef<HTMLDivElement>(null);
   const pace = settings.value.get('run.pace');

@@ -1,3 +1,4 @@
+// What the files of car and road say of their origin.
 import { fixed, plural } from '../lib/format';
 import { tidy } from '../lib/scale';
 import { nameInWords } from '../lib/words';
@@ -16,6 +17,7 @@ interface Identified {
   readonly high: number;
 }
 
+/** Parameters that a log found or assumed. */
 export const identifiedOf = (of: Run): Identified[] =>
   of.identified_keys.map((key, i) => ({
     key,
@@ -31,7 +33,7 @@ export function fitInWords({ track_points, track_fit_rms_m, track_fit_max_m }: R
   return `${plural(track_points, 'point')} of the file, ${rms} m from the line (rms), ${most} m at most`;
 }
 
-/** What the road was read from, and at which size it is driven. */
+/** Kind of the file that the road was read from, and the size at which it is driven. */
 export function roadInWords({ track_kind, track_scale }: Run): string {
   const size = Math.abs(track_scale - 1) < 1e-9 ? '' : `, driven at ${tidy(track_scale)} of its size`;
   return track_kind === '' ? '' : `Read from ${/^[aeiou]/i.test(track_kind) ? 'an' : 'a'} ${track_kind} file${size}.`;
@@ -42,6 +44,7 @@ function label(of: string): string {
   return entry ? labelOf(entry) : nameInWords(of);
 }
 
+/** Name of a parameter with its meaning and unit. */
 function Name({ of }: { of: string }) {
   const entry = entryOf(`vehicle.${of}`);
   if (!entry) return <>{label(of)}</>;
@@ -52,6 +55,7 @@ function Name({ of }: { of: string }) {
   );
 }
 
+/** Table of the parameters that a log found, and the names of those that were assumed. */
 function Found({ values }: { values: readonly Identified[] }) {
   const found = values.filter(({ low, high }) => low <= high);
   const assumed = values.filter(({ low, high }) => !(low <= high));

@@ -1,3 +1,4 @@
+// Bands in the plots over time: quality of the control steps, and faults.
 import type { Chart } from '../draw/chart';
 import { theme } from '../draw/theme';
 import { firstSince } from '../lib/math';
@@ -5,8 +6,8 @@ import { RUNG_WORDS } from '../protocol/messages';
 import { Column } from '../state/columns';
 import { plotted } from '../state/plot_view';
 
-const STRIP_HEIGHT = 5; // CSS pixels
-const GROUND_OPACITY = 0.13;
+const STRIP_HEIGHT = 5; // [px]; chosen
+const GROUND_OPACITY = 0.13; // of the bands of faults; chosen
 
 /** Severity of a control step: 0 usable and sent unchanged, 1 changed or replaced, 2 not the controller's. */
 export function stepSeverity(status: number, rung: number, isGated: number): 0 | 1 | 2 {
@@ -32,7 +33,7 @@ function fillStates(chart: Chart, stateAt: (row: number) => number, colours: rea
   }
 }
 
-/** A band at the bottom of a plot: green while the controller's answer was usable and sent unchanged. */
+/** Draws a band at the bottom of a plot: green while the controller's answer was usable and sent unchanged. */
 export function drawStatusStrip(chart: Chart): void {
   const { wonInText, planInText, lostInText } = theme();
   const [status, rung, gated] = [Column.solve_status, Column.rung, Column.is_gated].map((each) =>
@@ -42,7 +43,7 @@ export function drawStatusStrip(chart: Chart): void {
   fillStates(chart, stateAt, [wonInText, planInText, lostInText], STRIP_HEIGHT);
 }
 
-/** Behind the lines of a plot: a red ground while a fault acts, amber while another than the controller drives. */
+/** Draws the ground of a plot: red while a fault acts, amber while another than the controller drives. */
 export function drawFaultBands(chart: Chart): void {
   const [faults, rungs] = [plotted().column(Column.active_faults), plotted().column(Column.rung)];
   const stateAt = (i: number): number => ((faults[i] ?? 0) > 0 ? 2 : (rungs[i] ?? 0) > 0 ? 1 : 0);

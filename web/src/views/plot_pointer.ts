@@ -1,9 +1,10 @@
+// Pointer on a plot over time: cursor, mark and zoom.
 import type { Chart } from '../draw/chart';
 import { clamp, firstSince } from '../lib/math';
 import { Column } from '../state/columns';
 import { cursorTime, markTime, plotted, timeRange, zoomTo } from '../state/plot_view';
 
-const LEAST_DRAG_PX = 5;
+const LEAST_DRAG_PX = 5; // shorter drags are clicks; chosen
 
 /** The sample that is nearest to a time [s]; null without any. */
 function sampleAt(time: number): number | null {
@@ -24,8 +25,8 @@ export class PlotPointer {
   chart: Chart | null = null;
   readonly #width: () => number;
   readonly #select: (range: readonly [number, number] | null) => void;
-  #place: number | null = null;
-  #pressed: number | null = null;
+  #place: number | null = null; // of the pointer; null: outside
+  #pressed: number | null = null; // where the button was pressed; null: it is not
 
   /** `width`: of the area; `select`: shows the stretch that is dragged over; null: none. */
   constructor(width: () => number, select: (range: readonly [number, number] | null) => void) {
@@ -76,7 +77,7 @@ export class PlotPointer {
     return Math.abs(to - from) >= LEAST_DRAG_PX ? [Math.min(from, to), Math.max(from, to)] : null;
   }
 
-  /** What is drawn, or will be. */
+  /** Time range and width of the plotted area, drawn or about to be. */
   #area(): { readonly from: number; readonly to: number; readonly width: number } {
     if (this.chart) return { ...this.chart, width: this.chart.right - this.chart.left };
     const [from, to] = timeRange();

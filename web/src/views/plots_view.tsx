@@ -1,3 +1,4 @@
+// The plots over time: their toolbar, and what each of them shows.
 import { useComputed } from '@preact/signals';
 import { aboutZero, fromZero, rangeInSteps } from '../draw/axis';
 import { fixed } from '../lib/format';
@@ -23,9 +24,10 @@ import { type PlotSpec, TimePlot } from './time_plot';
 /** Colours with the same meaning in all plots: applied ink, requested violet, sent ochre. */
 const [APPLIED, ASKED, SENT, LIMIT] = [0, 1, 2, 4];
 
-/** From the units of a frame. */
+/** Factors from the units of a frame to those of the plots. */
 const [DEGREES, PERCENT] = [180 / Math.PI, 100];
 
+/** Plot of the speed in the user's unit. */
 const speedSpec = ({ name, perMps, axisStep, axisLeast }: SpeedUnit): PlotSpec => ({
   title: 'Speed',
   unit: name,
@@ -45,6 +47,7 @@ const commands = (sent: number, asked: number, applied: number, factor: number):
   { column: applied, label: 'applied', colour: APPLIED, factor },
 ];
 
+/** Plots before and after that of the cost, whose layers depend on the run. */
 const BEFORE_COST: readonly PlotSpec[] = [
   {
     title: 'Lateral error',
@@ -104,6 +107,7 @@ const AFTER_COST: readonly PlotSpec[] = [
   },
 ];
 
+/** Plot of the cost, stacked by its terms where the controller names them. */
 function costSpec(names: readonly string[]): PlotSpec {
   const shownNames = names.length > COST_TERMS ? [...names.slice(0, COST_TERMS - 1), 'others'] : names;
   const layers = shownNames.map((name, term) => ({
@@ -121,6 +125,7 @@ function costSpec(names: readonly string[]): PlotSpec {
   };
 }
 
+/** Hold, window of time, zoom and mark. */
 function Toolbar() {
   return (
     <div class="row" role="group" aria-label="Plots">
@@ -158,6 +163,7 @@ function Toolbar() {
   );
 }
 
+/** All plots over time. */
 export function PlotsView() {
   const names = useComputed(() => run.value?.cost_term_names.join('\n') ?? '');
   const speed = useComputed(() => speedSpec(speedUnit()));

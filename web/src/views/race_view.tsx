@@ -1,9 +1,11 @@
+// View of a race of two settings: begin, standing, keep the winner.
 import { valueInWords } from '../lib/scale';
 import { Button, Refusal } from '../parts/controls';
 import { canRace, endRace, keepWinner, race, raced, raceProblem, startRace } from '../state/rival';
 import { standingOf } from '../state/rival_answer';
 import { chosenSettings } from '../state/what_if';
 
+/** State of the race, and the choice of its winner. */
 function Standing() {
   const now = race.value;
   if (!now) return null;

@@ -1,23 +1,10 @@
 import { describe, expect, it } from 'vitest';
-import type { SchemaEntry } from '../protocol/schema';
+import { readSchema, type SchemaEntry } from '../protocol/schema';
 import { labelOf } from '../state/setting_search';
 import { rangeOf } from './setting_row';
 
-const entry = (change: Partial<SchemaEntry>): SchemaEntry => ({
-  key: 'a.b',
-  group: 'a',
-  kind: 'number',
-  unit: '',
-  minimum: 0,
-  maximum: 1,
-  choices: [],
-  default: 0,
-  start: null,
-  meaning: '',
-  is_live: true,
-  is_fixed: false,
-  ...change,
-});
+const entry = (change: object): SchemaEntry =>
+  readSchema([{ key: 'a.b', kind: 'number', minimum: 0, maximum: 1, ...change }])[0] as SchemaEntry;
 
 describe('the row of a setting', () => {
   it('is called by the words of its key, without the unit that stands beside it', () => {
@@ -28,12 +15,8 @@ describe('the row of a setting', () => {
   });
 
   it('has a slider where a range means something', () => {
-    expect(rangeOf(entry({ maximum: 500 }), 100)).toEqual({
-      minimum: 0,
-      maximum: 500,
-      scale: 'linear',
-      isInteger: false,
-    });
+    const range = { minimum: 0, maximum: 500, scale: 'linear', isInteger: false };
+    expect(rangeOf(entry({ maximum: 500 }), 100)).toEqual(range);
     expect(rangeOf(entry({ kind: 'integer', minimum: 5, maximum: 100 }), 40)?.isInteger).toBe(true);
     expect(rangeOf(entry({ maximum: 9007199254740992 }), 1)).toBeNull(); // seed
     expect(rangeOf(entry({ minimum: null }), 1)).toBeNull();

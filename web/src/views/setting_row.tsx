@@ -1,17 +1,19 @@
+// Row of a setting: name, control, unit, refusal, and reset.
 import { type Range, scaleOf, shareOf, tidy, valueAt, valueInWords } from '../lib/scale';
 import { capital } from '../lib/words';
 import { Button, Refusal, Select } from '../parts/controls';
 import type { SchemaEntry } from '../protocol/schema';
 import type { Setting } from '../protocol/source';
-import { canChange, change, firstValueOf, target, valueShown } from '../state/chosen_settings';
+import { canChange, change, firstValueOf, type NamedSetting, target, valueShown } from '../state/chosen_settings';
 import { canSet, set } from '../state/operate';
 import { labelOf } from '../state/setting_search';
-import { refusals, settings } from '../state/settings';
+import { refusals, type SettingChange, settings } from '../state/settings';
 import { DraftBox } from './draft_box';
 import { Meaning } from './meaning';
 
-const STEPS = 1000; // of a slider's travel
+const STEPS = 1000; // of a slider's travel; chosen
 
+/** Range of the slider of a setting; null where it needs none. */
 export function rangeOf({ minimum, maximum, kind }: SchemaEntry, usual: Setting | undefined): Range | null {
   if (minimum === null || maximum === null || !(maximum > minimum) || maximum > 1e12) return null;
   const typical = typeof usual === 'number' ? usual : minimum;
@@ -26,6 +28,7 @@ export function typed(text: string): Setting | null {
   return plain === '' || Number.isNaN(value) ? null : value;
 }
 
+/** A value as it stands in a box. */
 const asText = (value: Setting | undefined): string =>
   value === undefined ? '' : valueInWords(value).replace('−', '-');
 
@@ -48,6 +51,7 @@ function ValueBox({ entry, label }: { entry: SchemaEntry; label: string }) {
   );
 }
 
+/** Slider of a number, with a mark at the value that it is reset to. */
 function Slider({ entry, range, label }: { entry: SchemaEntry; range: Range; label: string }) {
   const value = valueShown(entry.key);
   const start = firstValueOf(entry);
@@ -105,10 +109,12 @@ export function ChoiceBox({
   );
 }
 
+/** Whether a setting is chosen among names. */
 const isChoice = ({ kind, choices }: SchemaEntry): boolean => kind === 'choice' || choices.length > 0;
-/** A number has a slider, a box and a unit. */
+/** Whether a setting is a number, which has a slider, a box and a unit. */
 const hasUnit = (entry: SchemaEntry): boolean => !isChoice(entry) && entry.kind !== 'bool' && entry.kind !== 'text';
 
+/** Control for the kind of a setting. */
 function Control({ entry, label }: { entry: SchemaEntry; label: string }) {
   const value = valueShown(entry.key);
   if (entry.kind === 'bool') {
@@ -140,7 +146,7 @@ function Control({ entry, label }: { entry: SchemaEntry; label: string }) {
 }
 
 /** A setting with its value before and after. */
-export function ChangeOf({ of: { key, from, to } }: { of: { key: string; from: Setting; to: Setting } }) {
+export function ChangeOf({ of: { key, from, to } }: { of: SettingChange }) {
   return (
     <>
       <code>{key}</code> <s class="soft">{valueInWords(from)}</s>{' '}
@@ -153,7 +159,7 @@ export function ChangeOf({ of: { key, from, to } }: { of: { key: string; from: S
 }
 
 /** Why a viewer cannot change a setting. */
-export const whyFixed = (key: string): string => `Fixed when the run starts. On the command line: --set ${key}=VALUE`;
+const whyFixed = (key: string): string => `Fixed when the run starts. On the command line: --set ${key}=VALUE`;
 
 /** The sign beside a setting that a viewer cannot change, or that restarts the run. */
 function Mark({ entry }: { entry: SchemaEntry }) {
@@ -173,7 +179,7 @@ function Mark({ entry }: { entry: SchemaEntry }) {
 }
 
 /** The name of a setting; pressed, it says what the setting means. */
-export function SettingMeaning({ entry, label }: { entry: SchemaEntry; label: string }) {
+function SettingMeaning({ entry, label }: { entry: SchemaEntry; label: string }) {
   const { minimum, maximum, unit, meaning, is_live, is_fixed, key } = entry;
   const hasRange = minimum !== null && maximum !== null && maximum > minimum;
   return (
@@ -187,7 +193,7 @@ export function SettingMeaning({ entry, label }: { entry: SchemaEntry; label: st
 }
 
 /** A setting: name, control, unit, the reason of a refusal, and a button back to the value at the start. */
-export function SettingRow({ entry, name }: { entry: SchemaEntry; name?: string }) {
+export function SettingRow({ entry, name }: NamedSetting) {
   const label = name ?? labelOf(entry);
   const value = valueShown(entry.key);
   const start = firstValueOf(entry);

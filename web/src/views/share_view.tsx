@@ -1,3 +1,4 @@
+// Dialogs to share the run as a link, and to drive the run of a link.
 import { plural } from '../lib/format';
 import { valueInWords } from '../lib/scale';
 import { store } from '../lib/store';
@@ -21,6 +22,7 @@ import { ChangeOf } from './setting_row';
 
 const isOpen = store.signal('page', false);
 
+/** Opens the dialog with the link. */
 export const openShare = (): void => {
   isOpen.value = true;
 };
@@ -72,6 +74,7 @@ function Offer() {
   );
 }
 
+/** Drives the run of the link. */
 async function accept(): Promise<void> {
   const request = wanted.value;
   wantedTexts.value = null;
@@ -120,6 +123,7 @@ function Question() {
   );
 }
 
+/** Both dialogs. */
 export function ShareView() {
   return (
     <>

@@ -1,3 +1,4 @@
+// The page below the header.
 import { mode } from '../state/mode';
 import { run } from '../state/run';
 import { isStale } from '../state/stage_state';

@@ -1,3 +1,4 @@
+// Strip below the picture: speed, pedals, lap, gap and one sentence; an alarm or the end of the run in their place.
 import type { ComponentChildren } from 'preact';
 import { fixed, lapTime, plural, side, UNKNOWN } from '../lib/format';
 import { clamp, degrees } from '../lib/math';
@@ -21,6 +22,7 @@ import { HashView } from './hash_view';
 import { isManual, Pad, toggleManual } from './manual_view';
 import { SentenceView, situationNow } from './sentence_view';
 
+/** The speed in the user's unit. */
 function Speed() {
   return (
     <p class="speed row line">
@@ -30,7 +32,7 @@ function Speed() {
   );
 }
 
-/** Grows from its middle: steering to its side; the throttle to the right, the brake to the left. */
+/** A bar that grows from its middle: steering to its side; the throttle to the right, the brake to the left. */
 function Bar({ label, share, text, id }: { label: string; share: number; text: string; id: string }) {
   const at = 50 * clamp(Number.isFinite(share) ? share : 0, -1, 1);
   return (
@@ -47,7 +49,7 @@ function Bar({ label, share, text, id }: { label: string; share: number; text: s
   );
 }
 
-/** What acts on the car now. */
+/** Steering and pedal as they act on the car. */
 function Bars() {
   const frame = shown.value;
   const steer = frame?.steer_applied_rad ?? NaN;
@@ -72,6 +74,7 @@ function Bars() {
   );
 }
 
+/** A value with its label. */
 function Cell({
   label,
   children,
@@ -93,6 +96,7 @@ function Cell({
   );
 }
 
+/** Number and clock of the lap. */
 function Lap() {
   const frame = shown.value;
   const number = frame && Number.isFinite(frame.lap_time_s) ? frame.lap + 1 : UNKNOWN;
@@ -122,6 +126,7 @@ function Gap() {
   );
 }
 
+/** A button with its key. */
 function Key({ label, name, isPossible, act }: { label: string; name: string; isPossible: boolean; act: () => void }) {
   return (
     <Button disabled={!isPossible} aria-keyshortcuts={name} act={act}>
@@ -132,6 +137,7 @@ function Key({ label, name, isPossible, act }: { label: string; name: string; is
 
 const Wheel = () => <Key label="Take the wheel" name="M" isPossible={canSet('manual.is_on')} act={toggleManual} />;
 
+/** The strip while the run goes on. */
 function Driving() {
   const now = situationNow();
   const isAlarm = now?.kind === 'alarm';
@@ -163,6 +169,7 @@ function Driving() {
   );
 }
 
+/** The strip while the connection is lost. */
 function Lost() {
   return (
     <section class="strip alarm" aria-label="Now" data-testid="banner">

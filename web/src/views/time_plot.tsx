@@ -1,3 +1,4 @@
+// One plot over time, on a canvas, with its legend and cursor.
 import { effect } from '@preact/signals';
 import type { ComponentChildren } from 'preact';
 import { useEffect, useRef, useState } from 'preact/hooks';
@@ -17,15 +18,17 @@ import { everyFrame } from '../state/ticker';
 import { drawFaultBands } from './plot_bands';
 import { PlotPointer } from './plot_pointer';
 
+/** A curve of a plot: a column of the history. */
 export interface Series {
   readonly column: number;
   readonly label: string;
-  readonly colour: number; // of plot_colours.ts, from 0
+  readonly colour: number; // of Theme.series, from 0
   readonly isDashed?: boolean;
   readonly isFilled?: boolean; // down to the previous series, or to 0
   readonly factor?: number; // from the column's unit to the plot's
 }
 
+/** Content of a plot. */
 export interface PlotSpec {
   readonly title: string;
   readonly unit: string;
@@ -36,11 +39,14 @@ export interface PlotSpec {
   readonly under?: (chart: Chart) => void;
 }
 
-/** Relative to now while the plot follows the run, so that the grid does not move; run time when zoomed in. */
+/**
+ * Ticks of the time axis: relative to now while the plot follows the run, so that the grid stands still; else run time.
+ */
 const ticksOfTime = (low: number, high: number): number[] =>
   // Times of the run are long labels, so fewer.
   zoomed.value ? ticksOf(low, high, 4.5) : ticksOf(low - high, 0, 6.5).map((back) => high + back);
 
+/** Label of a tick of the time axis. */
 function timeLabel(time: number, last: number): string {
   if (zoomed.value) return `${tidy(time)} s`;
   if (time !== last) return `−${tidy(Math.round((last - time) * 10) / 10)} s`;
@@ -63,14 +69,14 @@ function dataOf(spec: PlotSpec): Float64Array[] {
   ];
 }
 
-/** The value of a series at a time, or the newest. */
+/** The value of a series at a time; the newest one without a time. */
 function valueAt({ column, factor = 1 }: Series, time: number | null): number {
   const history = plotted();
   const row = time === null ? history.length - 1 : firstSince(history.column(Column.time_s), time - 1e-9);
   return (history.column(column)[row] ?? NaN) * factor;
 }
 
-/** The value under the cursor, or the newest; with a mark, the difference from there, too. */
+/** Text of the value under the cursor, or of the newest one; with a mark also the difference from the mark. */
 function readout(series: Series, decimals: number): string {
   const value = valueAt(series, cursorTime.value);
   const mark = markTime.value;
@@ -79,7 +85,7 @@ function readout(series: Series, decimals: number): string {
   return `${fixed(value, decimals)} (Δ ${difference > 0 ? '+' : ''}${fixed(difference, decimals)})`;
 }
 
-/** A dashed line where the mark is. */
+/** Draws a dashed line where the mark is. */
 function drawMark({ context, x, from, to, top, bottom }: Chart): void {
   const time = markTime.value;
   if (time === null || time < from || time > to) return;
@@ -120,8 +126,8 @@ function drawPlot(spec: PlotSpec, paper: Paper): Chart | null {
   return chart;
 }
 
-const PACE_MS = 100; // as often as text
-const PHASES = 6; // plots take turns, so that no repaint draws all of them
+const PACE_MS = 100; // longest time between repaints of a plot: as often as text
+const PHASES = 6; // plots take turns, so that no repaint draws all of them; chosen
 const plotsMade = store.data('page', () => ({ count: 0 }));
 
 /**
@@ -130,7 +136,7 @@ const plotsMade = store.data('page', () => ({ count: 0 }));
  */
 const paceOf = ({ box }: Paper): number => Math.min(PACE_MS, (1000 * windowSeconds.value) / Math.max(1, box.width));
 
-/** The plotted area under the pointer. */
+/** The plotted area, which receives the pointer. */
 function PointerArea({
   pointer,
   label,
@@ -161,6 +167,7 @@ function PointerArea({
   );
 }
 
+/** A plot over time, repainted only when it has changed and its turn has come. */
 export function TimePlot({ spec }: { spec: PlotSpec }) {
   const host = useRef<HTMLDivElement>(null);
   const [dragged, select] = useState<readonly [number, number] | null>(null);

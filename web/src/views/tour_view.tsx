@@ -1,3 +1,4 @@
+// View of the tour: the list of tours, the step with its tasks, and the end.
 import { effect } from '@preact/signals';
 import { useEffect, useLayoutEffect, useRef } from 'preact/hooks';
 import { addShortcuts } from '../lib/keys';
@@ -30,18 +31,20 @@ export function openTourHere(): void {
   showWhere();
 }
 
+/** Shows the mode of the step, with what the step searches for. */
 function showWhere(): void {
   if (!step.value) return;
   mode.value = step.value.mode;
   settingWords.value = step.value.search ?? '';
 }
 
+/** Goes on to the next step, in its mode. */
 function goOnThere(): void {
   goOn();
   showWhere();
 }
 
-/** The tour is about a run that can be changed. */
+/** Whether the tour is offered: for a run that can be changed. */
 export const isTourOffered = (): boolean =>
   run.value !== null && run.value.mode !== 'replay' && settings.value.size > 0;
 
@@ -53,7 +56,7 @@ export function tourLabel(): string {
   return at > 0 && at < count ? `Go on with the tour, step ${at + 1} of ${count}` : 'Tour';
 }
 
-/** As it was before the tour: pace, settings, faults, and the car at the start. */
+/** Puts everything back as before the tour: settings, faults, driver, pace, and the car at the start. */
 function putBack(): void {
   for (const { key, from } of settingChanges.value) if (entryOf(key)?.is_live) set(key, from);
   for (const [key, value] of settings.value) if (key.startsWith('fault.') && value === true) set(key, false);
@@ -62,6 +65,7 @@ function putBack(): void {
   call('/reset');
 }
 
+/** Heading of the tour; focused when it changes. */
 function Heading({ text }: { text: string }) {
   const element = useRef<HTMLHeadingElement>(null);
   useLayoutEffect(() => element.current?.focus(), [text]);
@@ -72,6 +76,7 @@ function Heading({ text }: { text: string }) {
   );
 }
 
+/** Tasks of the step, and which are done. */
 function Tasks({ of }: { of: Step }) {
   return (
     <ol class="tour-tasks row">
@@ -92,6 +97,7 @@ function announcement({ tasks }: Step): string {
   return next === 0 ? '' : `Done: ${tasks[next - 1]}. Next: ${tasks[next]}.`;
 }
 
+/** The step: text, tasks, and the way on. */
 function StepCard({ of }: { of: Step }) {
   const isPossible = link.value !== 'live' || of.isPossible();
   const isThere = mode.value === of.mode;
@@ -117,6 +123,7 @@ function StepCard({ of }: { of: Step }) {
   );
 }
 
+/** The list of tours. */
 function ListCard() {
   return (
     <ul class="row">
@@ -136,6 +143,7 @@ function ListCard() {
   );
 }
 
+/** The end of a tour. */
 function EndCard({ of }: { of: Tour }) {
   const names = skipped.value.map((name) => of.steps.find((each) => each.name === name)?.title ?? name);
   return (
@@ -186,7 +194,7 @@ addShortcuts('Page', {
   action: () => (isTourOpen.value ? leaveTour() : isTourOffered() && openTourHere()),
 });
 
-/** A style, not a class: what the step is about is drawn again and again. */
+/** Style that marks what the step is about; a class would be lost when the element is drawn again. */
 const marked = new CSSStyleSheet();
 document.adoptedStyleSheets.push(marked);
 effect(() => {

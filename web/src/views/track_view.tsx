@@ -27,10 +27,11 @@ import { Select } from '../parts/controls';
 import { Scene3dView } from '../scene3d/scene3d_view';
 import { session } from '../scene3d/session';
 import { ALL_CAMERAS, camera, camera3d, choose, obstacle, shows3d, zoomCamera } from '../scene3d/view_state';
-import { lossesToLimit, markedCorners, startLine } from '../state/compared';
+import { lossesToLimit, markedCorners } from '../state/compared';
 import { cursorMark, pointAt, timeNear } from '../state/cursor';
 import { faultMarks } from '../state/faults';
 import { hindsight } from '../state/hindsight';
+import { lapSamples } from '../state/laps';
 import { layers } from '../state/layers';
 import { limit } from '../state/limit';
 import { link } from '../state/link';
@@ -59,6 +60,7 @@ const metresAcross = store.signal('page', 100);
 /** Name of the ghost car in the key; null: none is shown. */
 const ghostLabel = store.signal<string | null>('page', null);
 
+/** Multiplies the width of the view. */
 export function zoom(factor: number): void {
   if (shows3d.value) zoomCamera(factor);
   else metresAcross.value = zoomed(metresAcross.value, factor);
@@ -105,7 +107,7 @@ function worldOf(shape: RoadShape | null) {
     corners: markedCorners(),
     kerb: run.value?.kerb_width_m ?? 0,
     isWhole,
-    start: startLine(),
+    start: lapSamples.line,
     losses: isWhole ? lossesToLimit.value : null,
     size: run.value ? paintSize(run.value) : 1,
   };

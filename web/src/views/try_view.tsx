@@ -1,3 +1,4 @@
+// Mode Try: the run as a sentence of choices, settings, faults and both futures.
 import type { ComponentChildren } from 'preact';
 import { plural } from '../lib/format';
 import { tidy } from '../lib/scale';
@@ -26,22 +27,24 @@ import { OriginView } from './origin_view';
 import { RaceView } from './race_view';
 import { ChangeOf, ChoiceBox, SettingRow } from './setting_row';
 
+/** Whether the search takes the focus as soon as it is there. */
 const wants = store.data('page', () => ({ search: false }));
 
-/** The search takes the next key, also where it is not there yet: it appears before another key can be pressed. */
+/** Focuses the search, at once or as soon as it is there, which is before another key can be pressed. */
 export function focusSearch(): void {
   const box = document.getElementById('search');
   wants.search = box === null;
   box?.focus();
 }
 
+/** Focuses the search if it was asked for before. */
 function takeFocus(box: HTMLInputElement | null): void {
   if (!box || !wants.search) return;
   wants.search = false;
   box.focus();
 }
 
-const LATENCIES_MS = [0, 50, 100, 150, 200, 300];
+const LATENCIES_MS = [0, 50, 100, 150, 200, 300]; // offered; chosen
 
 /** A word of the sentence with what follows it, which stays on its line. */
 function Word({ name, children, end = '' }: { name: string; children: ComponentChildren; end?: string }) {
@@ -53,6 +56,7 @@ function Word({ name, children, end = '' }: { name: string; children: ComponentC
   );
 }
 
+/** A choice of the sentence; a text where there is nothing to choose. */
 function Choice({ name, label, end = '' }: { name: string; label: string; end?: string }) {
   const entry = choiceOf(name);
   if (!entry || entry.choices.length === 0) return <b>{String(settings.value.get(name) ?? '')}</b>;
@@ -63,6 +67,7 @@ function Choice({ name, label, end = '' }: { name: string; label: string; end?: 
   );
 }
 
+/** Choice of the latency. */
 function Latency() {
   const now = Number(settings.value.get('latency_ms'));
   const all = [...new Set([...LATENCIES_MS, now])].filter(Number.isFinite).sort((a, b) => a - b);
@@ -77,7 +82,7 @@ function Latency() {
   );
 }
 
-/** The fault that acts; another one that is chosen begins, and the one before ends. */
+/** Choice of the one fault that is active. */
 function FaultWord() {
   const all = allFaults.value;
   const now = all.find(({ isActive }) => isActive);
@@ -116,6 +121,7 @@ function RunSentence() {
   );
 }
 
+/** Changed settings, each with a button that resets it. */
 function Changes() {
   const changes = settingChanges.value;
   return (
@@ -142,7 +148,7 @@ function Changes() {
   );
 }
 
-/** Which car the sliders change. */
+/** Choice of the car that the sliders change. */
 function Target() {
   if (!canDriveBoth() || askedLog.value) return null;
   return (
@@ -156,6 +162,7 @@ function Target() {
   );
 }
 
+/** Search and rows of settings. */
 function Settings() {
   const words = settingWords.value;
   const shown = words === '' ? tenSettings.value : found(words);
@@ -178,7 +185,7 @@ function Settings() {
       </div>
       <div class="sliders">
         {shown.map(({ entry, name }) => (
-          <SettingRow key={entry.key} entry={entry} {...(name === undefined ? {} : { name })} />
+          <SettingRow key={entry.key} entry={entry} name={name} />
         ))}
         {shown.length === 0 && words !== '' && <p class="soft">Nothing matches.</p>}
         <Refusal text={choiceRefusal.value} />
@@ -191,7 +198,7 @@ function Settings() {
   );
 }
 
-/** Says why there is nothing to set. */
+/** Reason why there is nothing to set. */
 function NothingToSet() {
   if (link.value !== 'live') return <p class="soft">Waiting for the connection.</p>;
   return (
@@ -201,7 +208,7 @@ function NothingToSet() {
   );
 }
 
-/** What happens if: the run as a sentence, ten sliders, search, faults, and both futures. */
+/** The mode Try. */
 export function TryView() {
   const isSettable = schema.value.length > 0 || askedLog.value !== null;
   return (

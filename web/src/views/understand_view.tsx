@@ -1,3 +1,5 @@
+// Mode Understand: two laps compared on the map, by corner and in plots, with one cursor; a switch adds solver and
+// guard.
 import { download, fileName } from '../lib/download';
 import { lapTime } from '../lib/format';
 import { addShortcuts } from '../lib/keys';
@@ -21,8 +23,6 @@ import { run } from '../state/run';
 import { startSettings } from '../state/settings';
 import { EngineerView } from './engineer_view';
 
-// Compares two laps on the map, by corner and in plots, with one cursor; a switch adds solver and guard.
-
 /** Whether what solver and controller did is shown. */
 export const isEngineer = persisted<boolean>('engineer', false);
 
@@ -36,6 +36,7 @@ addShortcuts('Page', {
 /** Why a recording could not be added; empty without a reason. */
 const problem = store.signal('page', '');
 
+/** Reads recordings to compare with. */
 async function addRecordings(files: readonly File[]): Promise<void> {
   problem.value = '';
   try {
@@ -45,6 +46,7 @@ async function addRecordings(files: readonly File[]): Promise<void> {
   }
 }
 
+/** Switch that shows what solver and controller did. */
 function EngineerSwitch() {
   return (
     <label class="row line soft" title="Plan, solver, guard and estimates (E)">
@@ -61,7 +63,7 @@ function EngineerSwitch() {
 }
 
 /** What is missing for a comparison, as a sentence. */
-export function waitingFor(): string {
+function waitingFor(): string {
   void sampledLaps.value; // rendered again when laps are sampled
   if (!run.value) return 'Waiting for a run.';
   if (!run.value.is_closed) return 'This road is open: it has no laps to compare.';
@@ -94,6 +96,7 @@ function Differences({ both }: { both: Comparison }) {
   );
 }
 
+/** What the gap to the limit was spent on, why there is no limit, and what differed between two laps. */
 function Causes({ both }: { both: Comparison }) {
   const isToLimit = both.b.id === 'limit';
   const text = limit.value && isToLimit ? causesText(causesOf(limit.value, bestLap.value)) : '';
@@ -162,7 +165,7 @@ function AllLaps({ both }: { both: Comparison | null }) {
   );
 }
 
-/** Where A loses time to B, from one sentence to what solver and controller did. */
+/** The mode Understand. */
 export function UnderstandView() {
   const both = comparison.value;
   const at = cursorAlong.value;
