@@ -3,6 +3,7 @@
 #include "chicane/road/known_road.hpp"
 
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -24,6 +25,7 @@ constexpr double kEdgeFound = 0.01;   // [m] limit of the last iteration's step;
 /// Options of the road learned from waypoints; the guard uses its line alone, not its speeds.
 constexpr RoadOptions kSeen{
     .half_width = 0.0, .smoothing_width = 1.0, .remember_waypoints = true, .speed = {}};
+constexpr double kFar = std::numeric_limits<double>::infinity();
 
 /// Points of a closed track's line as waypoints of telemetry, evenly spaced.
 std::vector<Vec2> waypoints_of(const RoadData& data) {
@@ -57,15 +59,16 @@ KnownRoad::KnownRoad(const RoadData& data, const model::VehicleParams& vehicle)
     : line_{static_cast<int>(data.points.size())} {
   const int intervals = static_cast<int>(data.points.size()) - 1;
   if (intervals < 1 || !line_.shape(data.length, intervals, data.is_closed)) return;
-  edges_.reserve(data.points.size());
+  rooms_.reserve(data.points.size());
   for (std::size_t i = 0; i < data.points.size(); ++i) {
     const RoadPoint& point = data.points[i];
     line_.samples()[i].curve = {.position = point.position,
                                 .tangent = Vec2{cos(point.heading), sin(point.heading)},
                                 .heading = point.heading,
                                 .curvature = point.curvature};
-    edges_.push_back({point.left, point.right});
+    rooms_.push_back({{point.left, point.right}});
   }
+  find_narrowest();
   if (data.is_closed) smooth(data, vehicle);
 }
 
@@ -92,15 +95,17 @@ void KnownRoad::smooth(const RoadData& data, const model::VehicleParams& vehicle
     }
     return std::fabs(step) < kEdgeFound ? room : first;
   };
-  std::vector<Edges> edges;
-  edges.reserve(planned->line().samples().size());
+  std::vector<Room> rooms;
+  rooms.reserve(planned->line().samples().size());
   for (const ReferenceLine::Sample& sample : planned->line().samples()) {
     const ReferenceLine::Projection foot =
         centre.project_along(sample.curve.position, sample.curve.heading, 2.0 * vehicle.width);
-    edges.push_back({distance_to_edge(sample.curve, foot, 1.0), distance_to_edge(sample.curve, foot, -1.0)});
+    rooms.push_back(
+        {{distance_to_edge(sample.curve, foot, 1.0), distance_to_edge(sample.curve, foot, -1.0)}});
   }
   line_ = planned->line();
-  edges_ = std::move(edges);
+  rooms_ = std::move(rooms);
+  find_narrowest();
 }
 
 KnownRoad::KnownRoad(double half_width, const model::VehicleParams& vehicle)
@@ -111,12 +116,13 @@ KnownRoad::KnownRoad(double half_width, const model::VehicleParams& vehicle)
 void KnownRoad::use_line(const RacingRoad* lap) {
   if (lap == nullptr || lap->line().is_empty()) return;
   line_ = lap->line();
-  edges_.clear();
+  rooms_.clear();
   for (std::size_t i = 0; i < line_.samples().size(); ++i) {
     const double s = static_cast<double>(i) * line_.spacing();
-    edges_.push_back(seen_ ? assumed_edges(line_.demand(s).offset) : lap->room(s));
+    rooms_.push_back({seen_ ? assumed_edges(line_.demand(s).offset) : lap->room(s)});
   }
   is_raced_ = true;
+  find_narrowest();
   slides_ = lap->terms().slides;
   ++lines_;
 }
@@ -138,18 +144,45 @@ void KnownRoad::add(const model::Measurement& now) noexcept {
   if (std::isfinite(apart)) next_waypoint_ = std::min(apart, kMostToNext);
 }
 
-KnownRoad::Edges KnownRoad::edges(double s) const noexcept {
-  if (is_learning()) return assumed_edges(seen_->line().demand(s).offset);
+/// Index of the sample of line_ before s, and the weight of the next one.
+std::pair<std::size_t, double> KnownRoad::place(double s) const noexcept {
   const double length = line_.length();
   double along = std::clamp(s, 0.0, length);
   if (line_.is_closed() && along != s) along = s - std::floor(s / length) * length;
-  const auto last = edges_.size() - 2;
   const double place = along / line_.spacing();
-  const auto i = std::min(static_cast<std::size_t>(std::max(place, 0.0)), last);
-  const double share = std::clamp(place - static_cast<double>(i), 0.0, 1.0);
-  const Edges& from = edges_[i];
-  const Edges& to = edges_[i + 1];
+  const auto i = std::min(static_cast<std::size_t>(std::max(place, 0.0)), rooms_.size() - 2);
+  return {i, std::clamp(place - static_cast<double>(i), 0.0, 1.0)};
+}
+
+KnownRoad::Edges KnownRoad::edges(double s) const noexcept {
+  if (is_learning()) return assumed_edges(seen_->line().demand(s).offset);
+  const auto [i, share] = place(s);
+  const Edges &from = rooms_[i].edges, &to = rooms_[i + 1].edges;
   return {from.left + share * (to.left - from.left), from.right + share * (to.right - from.right)};
+}
+
+KnownRoad::Here KnownRoad::here(double s) const noexcept {
+  if (is_learning()) return {seen_->line().demand(s).curvature, {-kFar, -kFar}};
+  const auto [i, share] = place(s);
+  const double from = line_.samples()[i].curve.curvature, to = line_.samples()[i + 1].curve.curvature;
+  const bool is_beyond = !line_.is_closed() && !(s >= 0.0 && s <= line_.length());
+  const double slope = (to - from) / line_.spacing();
+  return {is_beyond ? 0.0 : from + share * line_.spacing() * slope, rooms_[i].narrowest};
+}
+
+void KnownRoad::find_narrowest() noexcept {
+  const auto last = static_cast<std::ptrdiff_t>(rooms_.size()) - 1;
+  const auto reach = std::min(static_cast<std::ptrdiff_t>(std::ceil(kReach / line_.spacing())), last - 1);
+  for (std::ptrdiff_t i = 0; i <= last; ++i) {
+    Edges least{kFar, kFar};
+    for (std::ptrdiff_t k = i - reach; k <= i + 1 + reach; ++k) {
+      const std::ptrdiff_t lap = !line_.is_closed() ? 0 : k < 0 ? -last : k > last ? last : 0;
+      const Edges& there =
+          rooms_[static_cast<std::size_t>(std::clamp(k - lap, std::ptrdiff_t{0}, last))].edges;
+      least = {std::min(least.left, there.left), std::min(least.right, there.right)};
+    }
+    rooms_[static_cast<std::size_t>(i)].narrowest = least;
+  }
 }
 
 }  // namespace chicane::road

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "chicane/model/state.hpp"
@@ -44,6 +46,14 @@ class KnownRoad {
   using Edges = Road::Room;
   /// Edges at arc length s [m] of the line. Pre: the line is not empty.
   [[nodiscard]] Edges edges(double s) const noexcept;
+  /// What each step of a simulated stop needs of its place, in one look-up.
+  struct Here {
+    double curvature = 0.0;  ///< of the line [1/m]
+    Edges narrowest{};       ///< lower bounds of edges() within kReach; minus infinity with waypoints [m]
+  };
+  [[nodiscard]] Here here(double s) const noexcept;
+  static constexpr double kReach =
+      6.0;  ///< [m] derived: twice the longest way from a car's middle to an axle
   /// End of an open road [m]. A road from waypoints is assumed to continue straight to the next waypoint (as
   /// far as the last two are apart, at most 25 m), and beyond it by half its width.
   [[nodiscard]] double end() const noexcept {
@@ -72,9 +82,18 @@ class KnownRoad {
   }
   /// Replaces the line of a closed track by the smooth one that a controller plans from its waypoints.
   void smooth(const RoadData& data, const model::VehicleParams& vehicle);
+  /// Edges at a sample of line_, and Here::narrowest from there to the next one.
+  struct Room {
+    Edges edges;
+    Edges narrowest{};
+  };
+  /// Index of the sample of line_ before s, and the weight of the next one.
+  [[nodiscard]] std::pair<std::size_t, double> place(double s) const noexcept;
+  /// Fills Room::narrowest of all samples.
+  void find_narrowest() noexcept;
 
   ReferenceLine line_;          ///< line of a track, or racing line
-  std::vector<Edges> edges_;    ///< edges at the samples of line_
+  std::vector<Room> rooms_;     ///< at the samples of line_
   std::optional<Road> seen_;    ///< road learned from waypoints; none on a track
   double half_width_ = 0.0;     ///< from the waypoints' line to each edge [m]
   double next_waypoint_ = 0.0;  ///< assumed distance from the last waypoint to the next [m]

@@ -48,6 +48,7 @@ void ControlCycle::begin(std::uint64_t cycle, double longest) noexcept {
   stop_.size = 0;
   prediction_check_.reset();
   next_ = cycle;
+  shows_throttle_ = false;
   begins_ = true;
 }
 
@@ -100,7 +101,9 @@ void ControlCycle::step(const CycleInput& input, telemetry::Frame& frame) noexce
   frame.gate_interval = frame.begins ? 0.0 : input.interval;
   longest_ = std::max(frame.gate_interval, longest_ * (1.0 - frame.gate_interval / kLateMemory));
   const double time = similarity_.time();
-  if (guard_.is_stopped_by_receiver(similarity_.full_size(frame.measurement), time * longest_))
+  shows_throttle_ |= frame.measurement.throttle > 0.0;
+  if (shows_throttle_ &&
+      guard_.is_stopped_by_receiver(similarity_.full_size(frame.measurement), time * longest_))
     longest_ = std::max(longest_, std::min(longest_ + frame.gate_interval, kLatest / time));
   frame.longest_interval = longest_;
   frame.is_manual = input.manual.has_value();

@@ -85,9 +85,10 @@ class ControlCycle {
   safety::Guard guard_;
   safety::StopPlan stop_;  ///< stop plan in the size of a model car; unused in full size
   telemetry::PredictionCheck prediction_check_;
-  std::uint64_t next_ = 0;  ///< number of the next cycle
-  bool begins_ = true;      ///< the next cycle is the first of a run
-  double longest_ = 0.0;    ///< longest recent interval, faded [s]
+  std::uint64_t next_ = 0;       ///< number of the next cycle
+  bool begins_ = true;           ///< the next cycle is the first of a run
+  bool shows_throttle_ = false;  ///< telemetry of this run has had a throttle
+  double longest_ = 0.0;         ///< longest recent interval, faded [s]
 };
 
 }  // namespace chicane::run

@@ -143,11 +143,6 @@ const model::Command* Fallback::planned(double time) const noexcept {
 
 namespace {
 
-/// Severity of a reason; the worst one is reported.
-constexpr int severity(GateReason reason) noexcept {
-  return reason == GateReason::kNone ? 0 : 4 - static_cast<int>(reason);
-}
-
 bool is_slow(const model::VehicleParams& vehicle) noexcept {
   return vehicle.steer_lag > model::kSlowSteering;
 }
@@ -164,46 +159,20 @@ double CommandGate::wheel_after(double elapsed) const noexcept {
   return steering.next(wheel_, last_.steer, elapsed);
 }
 
-GateResult CommandGate::limited(const model::Command& asked, double elapsed) const noexcept {
-  GateResult result{asked, GateReason::kNone};
-  model::Command& command = result.command;
-  const auto note = [&](GateReason reason) {
-    if (severity(reason) > severity(result.reason)) result.reason = reason;
-  };
-
-  // Finite first, and explicitly: std::clamp and std::min let a NaN through.
-  if (!std::isfinite(command.steer)) {
-    command.steer = last_.steer;
-    note(GateReason::kNotFinite);
-  }
-  if (!std::isfinite(command.throttle)) {
+model::Command CommandGate::limited(const model::Command& asked, double elapsed) const noexcept {
+  model::Command command = asked;
+  // Finite first, and explicitly: std::clamp lets a NaN through.
+  if (!std::isfinite(command.steer)) command.steer = last_.steer;
+  if (!std::isfinite(command.throttle))
     command.throttle = -Fallback::kGentleBraking * vehicle_.brake_throttle_limit;
-    note(GateReason::kNotFinite);
-  }
-
-  if (std::fabs(command.steer) > vehicle_.steer_limit) {
-    command.steer = std::copysign(vehicle_.steer_limit, command.steer);
-    note(GateReason::kRange);
-  }
-  if (std::fabs(command.throttle) > 1.0) {
-    command.throttle = std::copysign(1.0, command.throttle);
-    note(GateReason::kRange);
-  }
-
-  if (std::isfinite(elapsed) && elapsed > 0.0) {
-    const double wheel = wheel_after(elapsed);
-    const double share = is_slow(vehicle_) ? 1.0 - exp(-elapsed / vehicle_.steer_lag) : 1.0;
-    const double reach = vehicle_.steer_rate_limit * elapsed / share;
-    if (command.steer > wheel + reach) {
-      command.steer = wheel + reach;
-      note(GateReason::kRate);
-    } else if (command.steer < wheel - reach) {
-      command.steer = wheel - reach;
-      note(GateReason::kRate);
-    }
-  }
-
-  return result;
+  command.steer = std::clamp(command.steer, -vehicle_.steer_limit, vehicle_.steer_limit);
+  command.throttle = std::clamp(command.throttle, -1.0, 1.0);
+  if (!std::isfinite(elapsed) || !(elapsed > 0.0)) return command;
+  const double wheel = wheel_after(elapsed);
+  const double share = is_slow(vehicle_) ? 1.0 - exp(-elapsed / vehicle_.steer_lag) : 1.0;
+  const double reach = vehicle_.steer_rate_limit * elapsed / share;
+  command.steer = std::clamp(command.steer, wheel - reach, wheel + reach);
+  return command;
 }
 
 double drive_to_valid_speed(const model::VehicleParams& car, double v) noexcept {
@@ -212,11 +181,10 @@ double drive_to_valid_speed(const model::VehicleParams& car, double v) noexcept 
   return (kExcess * car.valid_speed - v) / kApproach;
 }
 
-GateResult CommandGate::pass(const model::Command& asked, double elapsed) noexcept {
-  const GateResult result = limited(asked, elapsed);
+model::Command CommandGate::pass(const model::Command& asked, double elapsed) noexcept {
+  const model::Command sent = limited(asked, elapsed);
   wheel_ = wheel_after(elapsed);
-  last_ = result.command;
-  return result;
+  return last_ = sent;
 }
 
 }  // namespace chicane::safety

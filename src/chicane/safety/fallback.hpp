@@ -82,14 +82,6 @@ class Fallback {
   double distance_ = 0.0;  ///< driven since the last usable plan began [m]
 };
 
-/// Why the gate changed a command.
-enum class GateReason : signed char { kNone = 0, kNotFinite = 1, kRange = 2, kRate = 3 };
-
-struct GateResult {
-  model::Command command;                 ///< always finite, inside range and rate limits
-  GateReason reason = GateReason::kNone;  ///< worst one that applied
-};
-
 /// Acceleration that leads a car of speed `v` [m/s] to VehicleParams::valid_speed, and ends 5 % above it
 /// [m/s²]. Controllers that follow a plan of that speed are a little faster now and then, and need drive in
 /// bends; from 10 % above it `f1tenth` spins in a stop that was computed with its parameters.
@@ -104,9 +96,9 @@ class CommandGate {
  public:
   explicit CommandGate(const model::VehicleParams& vehicle) noexcept : vehicle_{vehicle} {}
   /// `elapsed` [s] since the last command, for the rate limit; <= 0 or non-finite skips the rate check.
-  [[nodiscard]] GateResult pass(const model::Command& asked, double elapsed) noexcept;
-  /// What pass() would send.
-  [[nodiscard]] GateResult limited(const model::Command& asked, double elapsed) const noexcept;
+  [[nodiscard]] model::Command pass(const model::Command& asked, double elapsed) noexcept;
+  /// The command that pass() would send.
+  [[nodiscard]] model::Command limited(const model::Command& asked, double elapsed) const noexcept;
   void reset() noexcept { *this = CommandGate{vehicle_}; }
   /// Another car's limits from now on; the last command stays.
   void set_vehicle(const model::VehicleParams& vehicle) noexcept { vehicle_ = vehicle; }

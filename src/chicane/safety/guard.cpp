@@ -158,14 +158,13 @@ void Guard::begin_with(const model::Command& acting, double time) noexcept {
 /// The last word: the command for the actuators, in range and rate.
 void Guard::send(const Cycle& cycle, const model::Command& asked, controller::StepResult& result) noexcept {
   const model::Command commanded = answer_.command_for(result.command);
-  const GateResult gated = gate_.pass(cycle.manual.value_or(commanded), cycle.interval);
-  result.command = gated.command;
-  report_.gated =
-      gated.reason != GateReason::kNone || gated.command != cycle.manual.value_or(answer_.command_for(asked));
-  const model::Command effect = answer_.effect_of(gated.command);
+  result.command = gate_.pass(cycle.manual.value_or(commanded), cycle.interval);
+  report_.gated = result.command != cycle.manual.value_or(commanded) ||
+                  result.command != cycle.manual.value_or(answer_.command_for(asked));
+  const model::Command effect = answer_.effect_of(result.command);
   controller_->note_sent(effect);
   if (!std::isfinite(sent_from_)) return;
-  commanded_.add(sent_from_, gated.command);
+  commanded_.add(sent_from_, result.command);
   sent_.add(sent_from_, effect);
   if (answer_.is_usual()) return;
   stop_ = filter_.stop();
@@ -346,7 +345,7 @@ bool Guard::slow_down(const StopStart& start, const Cycle& cycle, controller::St
 /// the speed up to which the car's parameters hold: no stop can be computed from there.
 model::Command Guard::limited(const model::Command& command, double interval) const noexcept {
   const model::Command commanded = answer_.command_for(command);
-  const model::Command gated = gate_.limited(commanded, interval).command;
+  const model::Command gated = gate_.limited(commanded, interval);
   model::Command inside = gated == commanded ? command : answer_.effect_of(gated);
   const model::VehicleParams& car = model_.vehicle();
   const double v = act_speed_;

@@ -120,56 +120,107 @@ class Guard {
   static constexpr double kRollsBackAtMost = 3.0;
 
   // The measurement: what of it is plausible, and what it tells of car, road and actuators.
+  /// Stage 2 of a cycle; returns what the controller gets.
   [[nodiscard]] const model::Measurement& look(const model::Measurement& measured) noexcept;
+  /// Difference between the estimate and its prediction `expected`: a verified stop has to cover it (eq. 5c).
   void note_residual(const model::State& expected, double time) noexcept;
+  /// Drops the place along a line that the road has replaced.
   void take_up_line() noexcept;
+  /// Sets grip_.
   void set_grip(double share) noexcept;
+  /// State of the car along the road when a command acts at `act_time` [s]; none: car or road are lost.
   [[nodiscard]] std::optional<StopStart> place_on_road(double act_time) noexcept;
 
   // The command: the controller's, a slower one, the stored stop or the fallback.
+  /// Stage 4 of a cycle.
   void choose(const model::Measurement& seen, const Cycle& cycle, controller::StepResult& result) noexcept;
+  /// Whether the answer may be sent, after slow_down() where it leaves only a closed-loop stop.
   [[nodiscard]] bool filter(const StopStart& start, const Cycle& cycle,
                             controller::StepResult& result) noexcept;
+  /// PredictiveFilter::verify() of the command that the gate would send.
   [[nodiscard]] Fit verify(const StopStart& start, const Cycle& cycle, const model::Command& command,
                            bool is_led = false) noexcept;
+  /// Limits the pedal to gentle braking; false: no stop follows even then.
   [[nodiscard]] bool slow_down(const StopStart& start, const Cycle& cycle,
                                controller::StepResult& result) noexcept;
+  /// The command inside range, rate and traction, without the reverse gear.
   [[nodiscard]] model::Command limited(const model::Command& command, double interval) const noexcept;
+  /// Sends the controller's answer, and gives its plan to the fallback.
   void accept(const model::Measurement& seen, controller::StepResult& result) noexcept;
+  /// Sends the fallback's command.
   void fall_back(const model::Measurement& seen, controller::StepResult& result) noexcept;
+  /// Replaces the answer by a command of the guard.
   void take_over(const model::Command& command, controller::Rung rung,
                  controller::StepResult& result) noexcept;
+  /// Sends the stored stop; false: there is none.
   [[nodiscard]] bool drive_backup(const StopStart& start, controller::StepResult& result) noexcept;
+  /// Writes the stored stop to `plan`, for viewers.
   void show_backup(const StopStart& start, controller::Plan& plan) const noexcept;
+  /// Begins commanded_ and sent_ with the command that acts before the first one of a run.
   void begin_with(const model::Command& acting, double time) noexcept;
+  /// Stage 6 of a cycle. `asked`: the command before stage 5.
   void send(const Cycle& cycle, const model::Command& asked, controller::StepResult& result) noexcept;
 
   // The way back of a car that is off its road, across it, stuck at its edge, or rolls back.
+  /// A car that is led back, when its next command acts.
+  struct LedCar {
+    model::State state;
+    model::VehicleParams vehicle;      ///< car with the lock that its wheels reach
+    std::optional<StopStart> start{};  ///< state along the road; none: car or road are lost
+    bool stands = false;               ///< slower than kStandingSpeed, and does not roll back
+    bool is_on_road = false;           ///< all contact patches are inside the edges
+    bool may_creep = false;            ///< on the road, and slow enough to turn on an arc beside the edge
+    double least_edge = 0.0;           ///< distance to the edge that an arc has to keep (eq. 6c) [m]
+  };
+  /// Updates run_.is_astray.
   void watch_course(const std::optional<StopStart>& start) noexcept;
   /// Whether the estimated speed is below kStandingSpeed.
   [[nodiscard]] bool stands() const noexcept { return std::fabs(estimator_.state().vx) < kStandingSpeed; }
+  /// Whether the controller does not drive a car that stands or is led.
   [[nodiscard]] bool idles(const controller::StepResult& result) const noexcept;
+  /// Whether the car is astray, or stands while its commands are refused.
   [[nodiscard]] bool should_lead_back(double time, bool has_answer) noexcept;
+  /// Walking pace on a course that meets the road; false where the car is too fast or lost.
   [[nodiscard]] bool lead_back(double act, const Cycle& cycle, controller::StepResult& result) noexcept;
+  /// The arc of a car that creeps beside the edge, in place of `command`: a gentle way to the line may lead
+  /// over the edge where more lock does not, or the long way round.
+  void turn_beside_edge(const LedCar& led, model::Command& command) noexcept;
+  /// The stored stop with the wheels of result.command, or standstill with them; false where a moving car has
+  /// no stop. `waits`: the wheels have not turned yet.
+  [[nodiscard]] bool turn_wheels_only(const LedCar& led, bool waits, controller::StepResult& result) noexcept;
+  /// Whether the arc of a creeping car with the wheels at `angle` [rad] stays on the road (eq. 6c).
+  [[nodiscard]] bool stays_on_road(const LedCar& led, double angle, bool goes_round = false) const noexcept;
+  /// The car with the lock that its wheels reach as they answer: who waits for more waits for ever.
   [[nodiscard]] model::VehicleParams led_vehicle() const noexcept;
   [[nodiscard]] bool turns_as_asked(double time, const model::State& car) noexcept;
+  /// Pedal against rolling back, 0 for a car whose heading is wrong instead.
   [[nodiscard]] double against_rolling_back() const noexcept;
+  /// Updates run_.rests.
   void watch_rest(double time, double throttle) noexcept;
   void free_stuck_car(double time, const Cycle& cycle, controller::StepResult& result) noexcept;
 
   // The trial of a car that was put elsewhere, or whose controller has no answer.
   void watch_for_reset(const model::Measurement& measured) noexcept;
+  /// Whether a trial may begin.
   [[nodiscard]] bool may_ask(const model::Measurement& measured) const noexcept;
+  /// Whether the measured place and heading are near the car's on the known road, or on the waypoints.
   [[nodiscard]] bool agrees_with_road(const model::Measurement& measured) const noexcept;
+  /// Resets estimates, stored stop and controller.
   void begin_here() noexcept;
+  /// Resets a controller that has had no answer for a second.
   void watch_answer(const model::Measurement& seen, bool has_answer) noexcept;
+  /// Drives the trial; false: none is running.
   [[nodiscard]] bool try_reset(const std::optional<StopStart>& start, const Cycle& cycle, double time,
                                controller::StepResult& result) noexcept;
 
   // The actuators: how they answer, and which commands compensate for it.
+  /// Sets the models to the brakes and the grip as estimated.
   void count_with_actuators() noexcept;
+  /// Updates actuators_ and learned_.
   void watch_actuators(const model::Measurement& seen) noexcept;
+  /// Stage 1 of a cycle.
   void take_up_actuators() noexcept;
+  /// Sets answer_, and sent_ by it.
   void count_with_answer() noexcept;
   void report_learned(controller::LearnedCar& learned) const noexcept;
 

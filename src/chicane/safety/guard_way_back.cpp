@@ -340,88 +340,93 @@ void Guard::watch_course(const std::optional<StopStart>& start) noexcept {
   if (is_on_road && off < kAlong) run_.is_astray = false;
 }
 
-/// A car that is astray, or that stands while its controller's commands are refused.
 bool Guard::should_lead_back(double time, bool has_answer) noexcept {
   if (!has_answer || !(stands() || run_.is_led)) run_.refused.at = time;
   if (run_.refused.lasts(time) > kRefusedTime) run_.is_led = true;
   return run_.is_astray || (run_.is_led && has_answer);
 }
 
-/// The car stands, or is led on, and its controller does not drive it although it aims at a speed.
 bool Guard::idles(const controller::StepResult& result) const noexcept {
   return (stands() || run_.is_led) && result.report.speed_reference > kTrialSpeed &&
          !(result.command.throttle > kDrives);
 }
 
-/// Walking pace on a course that meets the road; false where the car is too fast or lost.
 bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& result) noexcept {
   const road::ReferenceLine& line = road_.line();
   if (line.is_empty() || !estimator_.is_started() || !std::isfinite(act)) return false;
-  const model::State car = estimator_.predict(act, sent_).state;
+  LedCar led{.state = estimator_.predict(act, sent_).state, .vehicle = led_vehicle()};
+  const model::State& car = led.state;
   const bool rolls_back = direction_.rolls_back();
   const bool is_slow = rolls_back || std::fabs(car.vx) < kLedBackSpeed;
   if (!std::isfinite(car.x + car.y + car.psi + car.vx) || !is_slow) return false;
   const road::ReferenceLine::Projection place =
       line.project_along({car.x, car.y}, car.psi, 2.0 * model_.vehicle().width);
   if (!(place.distance < kLost)) return false;
-  const model::VehicleParams vehicle = led_vehicle();
   result.command = rolls_back ? model::Command{0.0, against_rolling_back()}
-                              : tracking::way_back(line, place, car, vehicle);
-  const std::optional<StopStart> start = place_on_road(act);
+                              : tracking::way_back(line, place, car, led.vehicle);
+  led.start = place_on_road(act);
   if (run_.is_astray) filter_.forget();
-  const double edge = start ? filter_.planner().edge(road_, *start) : 0.0;
-  const bool will_stand = std::fabs(car.vx) < kStandingSpeed && !rolls_back;
-  const bool is_on_road = start && edge >= 0.0;
-  const bool creeps = will_stand || (std::fabs(car.vx) < kStillCreeps * kCreep && !rolls_back);
+  const double edge = led.start ? filter_.planner().edge(road_, *led.start) : 0.0;
+  led.stands = std::fabs(car.vx) < kStandingSpeed && !rolls_back;
+  led.is_on_road = led.start && edge >= 0.0;
+  led.may_creep =
+      led.is_on_road && (led.stands || (std::fabs(car.vx) < kStillCreeps * kCreep && !rolls_back));
   // An arc that has begun counts to its end without a margin: the car may stray by millimetres from it.
-  run_.creeps &= creeps && is_on_road;
+  run_.creeps &= led.may_creep;
   const double least = run_.creeps ? kCreepNearer : kKeptShare * options_.margin;
-  const double kept = std::min(edge, least) - kCreepNearer;
-  const auto stays = [&](double angle, bool goes_round = false) {
-    return creeping_edge(filter_.planner(), road_, *start, angle, vehicle, goes_round) > kept;
-  };
-  double& steer = result.command.steer;
-  run_.goes_round = run_.goes_round && creeps && is_on_road && stays(car.steer, true);
-  if (run_.goes_round) {
-    result.command = creep(car.steer, car.vx, vehicle);
-  } else if (creeps && is_on_road && !stays(steer)) {
-    // A gentle way to the line may lead over the edge where more lock does not, or the long way round.
-    const double lock = std::copysign(vehicle.steer_limit, -start->e);
-    const bool goes_on = run_.creeps && stays(car.steer);
-    run_.goes_round = !goes_on && !stays(lock) && stays(-lock, true);
-    result.command = creep(goes_on ? car.steer : run_.goes_round ? -lock : lock, car.vx, vehicle);
-  }
+  led.least_edge = std::min(edge, least) - kCreepNearer;
+  turn_beside_edge(led, result.command);
   // The wheels turn at standstill: driving meanwhile would use up the room to the edge.
-  const bool has_turned = std::fabs(steer - car.steer) < kTurnedWheels * vehicle.steer_limit;
-  const bool waits = will_stand && is_on_road && !(turns_as_asked(act, car) && has_turned);
-  if (will_stand && result.command.throttle > 0.0) result.command = creep(steer, car.vx, vehicle);
-  Fit fit = start && !waits ? verify(*start, cycle, result.command, true) : Fit::kNone;
-  if (fit == Fit::kNone && creeps && is_on_road && !waits && has_turned &&
-      stays(car.steer, run_.goes_round)) {
-    result.command = creep(steer, car.vx, vehicle);
+  const bool has_turned =
+      std::fabs(result.command.steer - car.steer) < kTurnedWheels * led.vehicle.steer_limit;
+  const bool waits = led.stands && led.is_on_road && !(turns_as_asked(act, car) && has_turned);
+  if (led.stands && result.command.throttle > 0.0)
+    result.command = creep(result.command.steer, car.vx, led.vehicle);
+  Fit fit = led.start && !waits ? verify(*led.start, cycle, result.command, true) : Fit::kNone;
+  if (fit == Fit::kNone && led.may_creep && !waits && has_turned &&
+      stays_on_road(led, car.steer, run_.goes_round)) {
+    result.command = creep(result.command.steer, car.vx, led.vehicle);
     fit = Fit::kSeen;
     run_.creeps = true;
   }
   // Without a verified stop only a car that has stood astray, with a controller that cannot drive, may near
   // the edge. Any other keeps its stop and turns its wheels: with turned wheels it needs less room.
   const bool may_leave = run_.has_stood_astray && !waits && result.answer != Answer::kDrive;
-  if (is_on_road && fit == Fit::kNone && !may_leave) {
-    const double turned_to = steer;
-    if (will_stand && !waits && !stays(steer, run_.goes_round))
-      report_.reason = controller::GuardReason::kFacesEdge;
-    const bool has_stop = creeps && drive_backup(*start, result);
-    if (!has_stop && !will_stand) return false;
-    if (!has_stop) take_over({turned_to, 0.0}, Rung::kReturnToRoad, result);
-    steer = turned_to;
-    filter_.withdraw_stop();  // a receiver that plays the stop from now on would turn the wheels back
-    return true;
-  }
+  if (led.is_on_road && fit == Fit::kNone && !may_leave) return turn_wheels_only(led, waits, result);
   if (fit == Fit::kNone) filter_.forget();
   take_over(result.command, Rung::kReturnToRoad, result);
   return true;
 }
 
-/// The car with the lock that its wheels reach as they answer: who waits for more waits for ever.
+bool Guard::stays_on_road(const LedCar& led, double angle, bool goes_round) const noexcept {
+  return creeping_edge(filter_.planner(), road_, *led.start, angle, led.vehicle, goes_round) > led.least_edge;
+}
+
+void Guard::turn_beside_edge(const LedCar& led, model::Command& command) noexcept {
+  const double now = led.state.steer;
+  run_.goes_round = run_.goes_round && led.may_creep && stays_on_road(led, now, true);
+  if (run_.goes_round) {
+    command = creep(now, led.state.vx, led.vehicle);
+  } else if (led.may_creep && !stays_on_road(led, command.steer)) {
+    const double lock = std::copysign(led.vehicle.steer_limit, -led.start->e);
+    const bool goes_on = run_.creeps && stays_on_road(led, now);
+    run_.goes_round = !goes_on && !stays_on_road(led, lock) && stays_on_road(led, -lock, true);
+    command = creep(goes_on ? now : run_.goes_round ? -lock : lock, led.state.vx, led.vehicle);
+  }
+}
+
+bool Guard::turn_wheels_only(const LedCar& led, bool waits, controller::StepResult& result) noexcept {
+  const double steer = result.command.steer;
+  if (led.stands && !waits && !stays_on_road(led, steer, run_.goes_round))
+    report_.reason = controller::GuardReason::kFacesEdge;
+  const bool has_stop = led.may_creep && drive_backup(*led.start, result);
+  if (!has_stop && !led.stands) return false;
+  if (!has_stop) take_over({steer, 0.0}, Rung::kReturnToRoad, result);
+  result.command.steer = steer;
+  filter_.withdraw_stop();  // a receiver that plays the stop from now on would turn the wheels back
+  return true;
+}
+
 model::VehicleParams Guard::led_vehicle() const noexcept {
   model::VehicleParams vehicle = model_.vehicle();
   const double lock = vehicle.steer_limit;

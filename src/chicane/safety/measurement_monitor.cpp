@@ -57,9 +57,9 @@ const model::Measurement& MeasurementMonitor::check(const model::Measurement& no
   const Signals wrong{findings_.position_jump, findings_.heading_jump, findings_.speed_mismatch};
   checked_ = without(now, findings_.frozen || is_old ? kAll : wrong);
   const bool counts_on = is_judged && !is_blind && watch_.doubts().place && !wrong.heading && !wrong.speed;
-  if (counts_on && watch_.x() != expected->x) {
-    checked_.x = watch_.x();
-    checked_.y = watch_.y();
+  if (counts_on && watch_.place().x() != expected->x) {
+    checked_.x = watch_.place().x();
+    checked_.y = watch_.place().y();
   }
   return checked_;
 }
@@ -158,13 +158,13 @@ bool MeasurementMonitor::jumps(const model::Measurement& now, double elapsed) co
 bool MeasurementMonitor::contradicts_displacement(const model::Measurement& now, double elapsed) noexcept {
   if (!has_last_ || elapsed > kLongestGap) sample_count_ = 0;
   if (sample_count_ == 0) {
-    driven_ = way_x_ = way_y_ = 0.0;
+    driven_ = 0.0;
+    way_ = {};
   } else {
     const double driven = 0.5 * elapsed * (now.speed + last_.speed);
     const double heading = now.psi + 0.5 * angle_difference(last_.psi, now.psi);
     driven_ += driven;
-    way_x_ += driven * cos(heading);
-    way_y_ += driven * sin(heading);
+    way_ += driven * Vec2{cos(heading), sin(heading)};
   }
   // A jump of the place would look like a speed.
   const bool has_jumped =
@@ -174,9 +174,9 @@ bool MeasurementMonitor::contradicts_displacement(const model::Measurement& now,
   bool is_wrong = false;
   if (sample_count_ > 0) {
     const Sample& first = samples_[0];
-    const double displacement = hypot(now.x - first.x, now.y - first.y);
+    const double displacement = (Vec2{now.x, now.y} - first.place).norm();
     const double driven = driven_ - first.driven;
-    const double chord = hypot(way_x_ - first.way_x, way_y_ - first.way_y);
+    const double chord = (way_ - first.way).norm();
     const double tolerance = kMismatch + kMismatchShare * std::max(displacement, driven);
     is_wrong = displacement > driven + tolerance || displacement < chord - tolerance;
   }
@@ -186,7 +186,7 @@ bool MeasurementMonitor::contradicts_displacement(const model::Measurement& now,
       std::move(samples_.begin() + 1, samples_.end(), samples_.begin());
       --sample_count_;
     }
-    samples_[static_cast<std::size_t>(sample_count_++)] = {now.time, now.x, now.y, driven_, way_x_, way_y_};
+    samples_[static_cast<std::size_t>(sample_count_++)] = {now.time, {now.x, now.y}, driven_, way_};
   }
   return is_wrong;
 }

@@ -64,11 +64,10 @@ class MeasurementMonitor {
   explicit MeasurementMonitor(const SensorWatch& watch) noexcept : watch_{watch} {}
   /// Displacement and speed over the last second: what was measured at its beginning.
   struct Sample {
-    double time = 0.0;
-    double x = 0.0;
-    double y = 0.0;
-    double driven = 0.0;              ///< integral of the measured speed [m]
-    double way_x = 0.0, way_y = 0.0;  ///< integral of the measured speed along the measured heading [m]
+    double time = 0.0;    ///< [s]
+    Vec2 place{};         ///< [m]
+    double driven = 0.0;  ///< integral of the measured speed [m]
+    Vec2 way{};           ///< integral of the measured speed along the measured heading [m]
   };
   /// Some of what a measurement holds.
   struct Signals {
@@ -100,8 +99,8 @@ class MeasurementMonitor {
   double other_drift_ = 0.0;  ///< and the expected speed [m/s]
   std::array<Sample, kSamples> samples_{};
   int sample_count_ = 0;
-  double driven_ = 0.0;
-  double way_x_ = 0.0, way_y_ = 0.0;
+  double driven_ = 0.0;  ///< as in Sample [m]
+  Vec2 way_{};           ///< as in Sample [m]
 };
 
 /// Whether a car that is measured elsewhere than it can be was really put there, or is measured right again

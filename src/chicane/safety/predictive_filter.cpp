@@ -186,7 +186,9 @@ PredictiveFilter::Candidate PredictiveFilter::judge(const road::KnownRoad& road,
   candidate.fit = Fit::kOpen;
   candidate.worth = check.least_edge;
   if (!(goal.open_time > 0.0)) return candidate;
-  const DoubtCheck open = planner_.played(road, from, *tried_, goal.open_time + kRecovery);
+  // Of a command only whether both cars stay on the road counts; of driven stops the better one is chosen.
+  const double enough = goal.is_driven ? std::numeric_limits<double>::infinity() : 0.0;
+  const DoubtCheck open = planner_.played(road, from, *tried_, goal.open_time + kRecovery, enough);
   if (!(open.edge_for >= 0.0)) candidate.fit = Fit::kSeen;
   candidate.worth = open.edge >= 0.0 ? open.edge : -open.speed;
   return candidate;

@@ -53,6 +53,9 @@ constexpr double kMoving = 2.0;       // [m/s] a slower car, in full size, looks
 constexpr double kLongestStep = 0.5;  // [s]
 constexpr int kLearned = 200;         // innovations of which the noise is the mean
 
+/// Place of a measurement or a state [m].
+Vec2 place_of(const auto& at) noexcept { return {at.x, at.y}; }
+
 }  // namespace
 
 void SensorWatch::Noise::learn(double innovation) noexcept {
@@ -100,10 +103,10 @@ const SensorDoubts& SensorWatch::see(const model::Measurement& now, const model:
     if (!has_doubts()) calm_ = 0.0;
     clean_from_ = now.time;
   }
-  const double x = doubts_.place ? x_ : expected.x, y = doubts_.place ? y_ : expected.y;
-  const Innovation seen{.place = hypot(now.x - x, now.y - y),
-                        .heading = std::fabs(angle_difference(now.psi, expected.psi)),
-                        .speed = std::fabs(std::fabs(now.speed) - hypot(expected.vx, expected.vy))};
+  const Innovation seen{
+      .place = (place_of(now) - (doubts_.place ? counted_place_ : place_of(expected))).norm(),
+      .heading = std::fabs(angle_difference(now.psi, expected.psi)),
+      .speed = std::fabs(std::fabs(now.speed) - hypot(expected.vx, expected.vy))};
   const Innovation most = limits();
   // Where a command that acts late turns the car by more than (10), its heading is not known well enough.
   const double rate = expected.vx * tan(expected.steer) / wheelbase_;
@@ -117,8 +120,7 @@ const SensorDoubts& SensorWatch::see(const model::Measurement& now, const model:
     if (place_confirms_speed(elapsed, now, expected)) doubts_.speed = false;
     if (doubts_.place && !was_doubted) {
       has_jumped_ = true;
-      x_ = expected.x;
-      y_ = expected.y;
+      counted_place_ = place_of(expected);
     }
   }
   try_start(now, expected, elapsed);
@@ -127,16 +129,12 @@ const SensorDoubts& SensorWatch::see(const model::Measurement& now, const model:
     if (!is_sure()) clean_from_ = now.time - calm_;
     if (calm_ > kCalmTime) judge_sums(now);
   }
-  if (!doubts_.place) {
-    x_ = now.x;
-    y_ = now.y;
-  }
+  if (!doubts_.place) counted_place_ = place_of(now);
   unseen_ = has_doubts() ? unseen_ + elapsed : 0.0;
-  if (has_doubts()) {
+  if (has_doubts())
     clean_from_ = now.time;
-  } else {
+  else
     drift_ = 0.0;
-  }
   add_sample(now, expected);
   last_ = now;
   time_ = now.time;
@@ -165,28 +163,25 @@ void SensorWatch::count_on(double elapsed, const model::Measurement& now,
   const double turn = angle_difference(now.psi, last_.psi);
   const double course = last_.psi + 0.5 * turn + slip;
   const double way = 0.5 * elapsed * (std::fabs(now.speed) + std::fabs(last_.speed));
-  const double dx = way * cos(course), dy = way * sin(course);
-  moved_ = hypot(now.x - last_.x - dx, now.y - last_.y - dy);
-  longer_ = hypot(now.x - last_.x, now.y - last_.y) - way;
+  const Vec2 step = way * Vec2{cos(course), sin(course)}, moved = place_of(now) - place_of(last_);
+  moved_ = (moved - step).norm();
+  longer_ = moved.norm() - way;
   driven_ += way;
-  way_x_ += dx;
-  way_y_ += dy;
-  slip_x_ += dx - way * cos(course - slip);
-  slip_y_ += dy - way * sin(course - slip);
+  way_ += step;
+  slip_way_ += step - way * Vec2{cos(course - slip), sin(course - slip)};
   turned_ += turn;
   asked_ += elapsed * expected.vx * tan(expected.steer) / wheelbase_;
   const bool is_blind = doubts_.is_old || doubts_.heading || doubts_.speed;
   drift_ += (is_blind ? kBlindDrift : kDrift) * elapsed * expected.vx;
   if (!doubts_.place) return;
   // After a jump the estimate counts on by itself. Its slip must not come back to it as a measured place.
-  x_ = is_blind || has_jumped_ ? expected.x : x_ + dx;
-  y_ = is_blind || has_jumped_ ? expected.y : y_ + dy;
+  counted_place_ = is_blind || has_jumped_ ? place_of(expected) : counted_place_ + step;
 }
 
 void SensorWatch::add_sample(const model::Measurement& now, const model::State& expected) noexcept {
   if (count_ > 0 && now.time - back(0).time < kSpacing) return;
-  samples_[count_ % kSamples] = {now.time, now.x,   now.y,   driven_, way_x_,  way_y_,
-                                 slip_x_,  slip_y_, turned_, asked_,  expected};
+  samples_[count_ % kSamples] = {now.time,  place_of(now), driven_, way_,
+                                 slip_way_, turned_,       asked_,  expected};
   ++count_;
 }
 
@@ -257,11 +252,10 @@ bool SensorWatch::is_earlier(const model::Measurement& now, const Innovation& mo
   for (std::size_t i = 0; i + 1 < have && now.time - back(i).time < kLatest; ++i) {
     const model::State& later = back(i).estimated;
     const model::State& earlier = back(i + 1).estimated;
-    const double dx = later.x - earlier.x, dy = later.y - earlier.y;
-    const double square = dx * dx + dy * dy;
-    const double along = (now.x - earlier.x) * dx + (now.y - earlier.y) * dy;
-    const double share = square > 0.0 ? std::clamp(along / square, 0.0, 1.0) : 0.0;
-    const double away = hypot(now.x - earlier.x - share * dx, now.y - earlier.y - share * dy);
+    const Vec2 step = place_of(later) - place_of(earlier), from = place_of(now) - place_of(earlier);
+    const double square = step.squared_norm();
+    const double share = square > 0.0 ? std::clamp(from.dot(step) / square, 0.0, 1.0) : 0.0;
+    const double away = (from - share * step).norm();
     const double psi = earlier.psi + share * angle_difference(later.psi, earlier.psi);
     const double speed =
         hypot(earlier.vx, earlier.vy) + share * (hypot(later.vx, later.vy) - hypot(earlier.vx, earlier.vy));
@@ -272,7 +266,7 @@ bool SensorWatch::is_earlier(const model::Measurement& now, const Innovation& mo
   return false;
 }
 
-/// Equation 10: the motion over up to 10 s by the place against that by speed and heading.
+/// Equation 11: the motion over up to 10 s by the place against that by speed and heading.
 void SensorWatch::judge_sums(const model::Measurement& now) noexcept {
   const std::size_t have = std::min(count_, kSamples);
   std::size_t i = 0;
@@ -281,20 +275,18 @@ void SensorWatch::judge_sums(const model::Measurement& now) noexcept {
     const Sample& from = back(i);
     const double elapsed = now.time - from.time;
     if (elapsed < 0.9 * kWindows[k]) return;
-    const double dx = now.x - from.x - (way_x_ - from.way_x), dy = now.y - from.y - (way_y_ - from.way_y);
-    // A car that is measured elsewhere than at its centre of mass slips otherwise there.
-    const double slip_x = slip_x_ - from.slip_x, slip_y = slip_y_ - from.slip_y;
-    const double slip = slip_x * slip_x + slip_y * slip_y;
-    const double share = slip > 0.0 ? std::clamp(-(dx * slip_x + dy * slip_y) / slip, 0.0, kMostSlip) : 0.0;
-    // Wind turns the course off the heading: that leaves the length of the way.
-    const double way_x = way_x_ - from.way_x, way_y = way_y_ - from.way_y;
-    const double way = hypot(way_x, way_y);
-    const double left_x = dx + share * slip_x, left_y = dy + share * slip_y;
-    const double length = hypot(way_x + left_x, way_y + left_y) - way;
-    const double aside = way > 0.0 ? std::fabs(left_y * way_x - left_x * way_y) / way : 0.0;
-    const double sum = hypot(length, std::max(aside - kCrab * way, 0.0));
+    const Vec2 way = way_ - from.way, off = place_of(now) - from.place - way;
+    // A car that is measured elsewhere than at its centre of mass slips differently there.
+    const Vec2 slip = slip_way_ - from.slip;
+    const double square = slip.squared_norm();
+    const double share = square > 0.0 ? std::clamp(-off.dot(slip) / square, 0.0, kMostSlip) : 0.0;
+    // Wind turns the course off the heading, and leaves the length of the way as it is.
+    const Vec2 left = off + share * slip;
+    const double length = way.norm(), longer = (way + left).norm() - length;
+    const double aside = length > 0.0 ? std::fabs(left.y() * way.x() - left.x() * way.y()) / length : 0.0;
+    const double sum = hypot(longer, std::max(aside - kCrab * length, 0.0));
     const double speed = (driven_ - from.driven) / elapsed;
-    const double most = kSum * size_ + kSumShare * speed * std::sqrt(elapsed) + kSumWay * way +
+    const double most = kSum * size_ + kSumShare * speed * std::sqrt(elapsed) + kSumWay * length +
                         kSumDeviations * sums_[k].deviation() + kDeviations * place_.deviation();
     if (sum < 0.5 * most) sums_[k].learn(sum);
     if (!(sum > most)) continue;
@@ -304,8 +296,7 @@ void SensorWatch::judge_sums(const model::Measurement& now) noexcept {
     } else {
       doubts_.place = true;
       has_jumped_ = false;
-      x_ = now.x - dx;
-      y_ = now.y - dy;
+      counted_place_ = place_of(now) - off;
     }
     return;
   }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 
+#include "chicane/base/vec2.hpp"
 #include "chicane/model/state.hpp"
 
 namespace chicane::safety {
@@ -48,20 +49,19 @@ class SensorWatch {
   [[nodiscard]] bool is_sure() const noexcept { return calm_ > kCalmTime; }
   /// Of the last see().
   [[nodiscard]] const SensorDoubts& doubts() const noexcept { return doubts_; }
-  /// Where the car is by what is not in doubt, while its place is [m].
-  [[nodiscard]] double x() const noexcept { return x_; }
-  [[nodiscard]] double y() const noexcept { return y_; }
+  /// Place of the car by the signals that are not in doubt, while the measured place is [m].
+  [[nodiscard]] const Vec2& place() const noexcept { return counted_place_; }
 
  private:
   /// One moment of the last seconds.
   struct Sample {
     double time = 0.0;
-    double x = 0.0, y = 0.0;            ///< measured [m]
-    double driven = 0.0;                ///< its length, along its bends [m]
-    double way_x = 0.0, way_y = 0.0;    ///< the way that speed and heading describe [m]
-    double slip_x = 0.0, slip_y = 0.0;  ///< what of it comes from the slip of the estimate [m]
-    double turned = 0.0, asked = 0.0;   ///< the heading, unwrapped, and what the wheels asked for [rad]
-    model::State estimated;             ///< of the car, when it was measured
+    Vec2 place{};                      ///< measured [m]
+    double driven = 0.0;               ///< length of the way, along its bends [m]
+    Vec2 way{};                        ///< way w by speed and heading (eq. 9) [m]
+    Vec2 slip{};                       ///< part of the way by the estimated slip, w_β (eq. 11) [m]
+    double turned = 0.0, asked = 0.0;  ///< turn of the heading, unwrapped, and by the wheels' angle [rad]
+    model::State estimated;            ///< estimate at the time of the measurement
   };
   static constexpr std::size_t kSamples = 256;
   static constexpr double kSpacing = 0.0395;  ///< [s] at least: the samples reach 10 s back
@@ -102,18 +102,19 @@ class SensorWatch {
   std::size_t count_ = 0;
   bool has_last_ = false;
   model::Measurement last_;
-  double time_ = 0.0;                   ///< of the last call [s]
-  double driven_ = 0.0;                 ///< [m]
-  double way_x_ = 0.0, way_y_ = 0.0;    ///< [m]
-  double slip_ = 0.0;                   ///< of the estimate [rad]
-  double slip_x_ = 0.0, slip_y_ = 0.0;  ///< [m]
-  double turned_ = 0.0, asked_ = 0.0;   ///< [rad]
-  double asked_rate_ = 0.0;             ///< of turning, by the wheels [rad/s]
-  double estimated_speed_ = 0.0;        ///< after the last call [m/s]
-  double calm_ = 0.0;                   ///< [s]
-  double clean_from_ = -1e9;            ///< the last doubt [s]
-  double place_agrees_ = 0.0, heading_agrees_ = 0.0, speed_agrees_ = 0.0;  ///< for how long [s]
-  double late_agrees_ = 0.0;                                               ///< [s]
+  double time_ = 0.0;                  ///< of the last call [s]
+  double driven_ = 0.0;                ///< as in Sample [m]
+  Vec2 way_{};                         ///< as in Sample [m]
+  double slip_ = 0.0;                  ///< estimated slip of the last call [rad]
+  Vec2 slip_way_{};                    ///< Sample::slip [m]
+  double turned_ = 0.0, asked_ = 0.0;  ///< as in Sample [rad]
+  double asked_rate_ = 0.0;            ///< rate of turning by the wheels' angle [rad/s]
+  double estimated_speed_ = 0.0;       ///< estimated speed after the last call [m/s]
+  double calm_ = 0.0;                  ///< time for which the car was measured calmly [s]
+  double clean_from_ = -1e9;           ///< time of the last doubt [s]
+  /// Times for which signals in doubt have agreed with what is expected [s].
+  double place_agrees_ = 0.0, heading_agrees_ = 0.0, speed_agrees_ = 0.0;
+  double late_agrees_ = 0.0;     ///< time for which measurements have been current [s]
   bool is_tried_ = false;        ///< whether the car answers late shows as it starts
   double asked_speed_ = 0.0;     ///< by the pedal since then [m/s]
   double lag_ = 0.0;             ///< [s]
@@ -122,9 +123,9 @@ class SensorWatch {
   double moved_ = 0.0;           ///< of the last step: place against speed and heading [m]
   double longer_ = 0.0;          ///< of the last step: displacement less what the speed says [m]
   bool has_jumped_ = false;      ///< a place in doubt: at once, not by a drift
-  double x_ = 0.0, y_ = 0.0;
-  double drift_ = 0.0;   ///< of the expected place, while it is not measured [m]
-  double unseen_ = 0.0;  ///< for how long something has not been measured [s]
+  Vec2 counted_place_{};         ///< place() [m]
+  double drift_ = 0.0;           ///< of the expected place, while it is not measured [m]
+  double unseen_ = 0.0;          ///< for how long something has not been measured [s]
   Noise place_, heading_, speed_, length_;
   std::array<Noise, 3> sums_;
 };

@@ -13,7 +13,7 @@ namespace {
 
 // Origins (chosen: by trial, see Guard):
 // - Derived: kDamping (5 % of overshoot), kLapDamping (none), kSpeedTime (the receiver's), kSlipShift (a
-//   central difference far below any peak), kMostOffset (Guard's kFarFromRoad), kGravity.
+//   central difference far below any peak), kMostOffset (Guard's kFarFromRoad), kGravity, kRounded.
 // - Measured: kFrictionDoubt (eq. 5b), kStiffnessDoubt (of the size that `identify` leaves: 1.3 and 1.8 %,
 //   docs/identification.md), kYawRateDoubt, kHeadingDoubt (two deviations of the residuals of `default` on
 //   lakeside, seven cars: 0.006 rad/s and 0.0017 rad at most).
@@ -49,6 +49,7 @@ constexpr double kMostSlide = 0.35;        // [rad] of slip: a car that slides m
 constexpr double kSlideGrows = 0.1;        // [rad] by which one that slides more already may slide further
 constexpr double kLeastShrink = 0.2;       // of 1 − κ d, near the centre of a bend
 constexpr double kLeastTurning = 0.02;     // [1/m] of a car that turns back along the road
+constexpr double kRounded = 1e-6;          // [m] more than the rounding of a bound
 constexpr double kMostOffset = 20.0;       // [m] beside the line the stop is given up
 
 /// Where the known road ends for a stop from `start` on [m]: a closed road after a lap.
@@ -65,6 +66,11 @@ double speed_of(const model::BodyMotion<double>& body) noexcept {
 /// How far the car's course is off its heading [rad], where slip angles say something.
 double slide(const model::BodyMotion<double>& body) noexcept {
   return hypot(body.vx, body.vy) > kSlow ? std::fabs(atan2(body.vy, body.vx)) : 0.0;
+}
+
+/// Whether slide() is more than `most` >= kMostSlide; atan x <= x spares most cars the angle itself.
+bool slides_more(const model::BodyMotion<double>& body, double most) noexcept {
+  return !(std::fabs(body.vy) < 0.99 * kMostSlide * body.vx) && slide(body) > most;
 }
 
 }  // namespace
@@ -87,7 +93,8 @@ void StopPlanner::set_vehicle(const model::VehicleParams& vehicle) noexcept {
 /// while the other waits.
 template <class Law>
 DoubtCheck StopPlanner::in_doubt(const road::KnownRoad& road, const StopStart& start, const Doubt& doubt,
-                                 double time, double least, const Law& command_at) const noexcept {
+                                 double time, double least, double enough,
+                                 const Law& command_at) const noexcept {
   const double reach = steer_reach(kStep);
   const StopCar::Step step = car_.step(kStep);
   const double end = end_of(road, start);
@@ -97,11 +104,13 @@ DoubtCheck StopPlanner::in_doubt(const road::KnownRoad& road, const StopStart& s
   struct Car {
     const StopCar& car;
     StopStart at;
+    Here here;
     double speed = 0.0, driven = 0.0;
     bool drives = true;
   };
-  DoubtCheck check;
-  std::array<Car, 2> cars{{{softer_, start}, {stiffer_, start}}};
+  DoubtCheck check{.edge_for = enough, .edge = enough};
+  const Here here = road.here(start.s);
+  std::array<Car, 2> cars{{{softer_, start, here}, {stiffer_, start, here}}};
   for (std::size_t k = 0; k < cars.size(); ++k) {
     const double inwards = std::copysign(k == 0 ? 1.0 : -1.0, start.body.r);
     StopStart& at = cars[k].at;
@@ -117,14 +126,16 @@ DoubtCheck StopPlanner::in_doubt(const road::KnownRoad& road, const StopStart& s
       Car& each = cars[k];
       if (!each.drives) continue;
       const double before = each.speed;
-      move(each.car, road, each.at, command_at(k, i, each.at, each.driven, before), step, reach);
+      move(each.car, each.here, each.at, command_at(k, i, each.at, each.here, each.driven, before), step,
+           reach);
+      each.here = road.here(each.at.s);
       each.speed = speed_of(each.at.body);
       each.driven += 0.5 * kStep * (before + each.speed);
-      const double now = std::min(edge(road, each.at), seen - each.at.s);
+      const double now = least_edge(road, each.at, each.here, std::min(enough, seen - each.at.s));
       check.edge = std::min(check.edge, now);
       if (each.at.time < start.time + time + 0.5 * kStep) check.edge_for = std::min(check.edge_for, now);
       if (now < least) check.speed = std::max(check.speed, each.speed);
-      check.stands &= now >= least && slide(each.at.body) <= most_slide && each.at.s < end;
+      check.stands &= now >= least && !slides_more(each.at.body, most_slide) && each.at.s < end;
       each.drives = now >= least && each.speed >= kStanding;
     }
     if (!check.stands && !(time > 0.0)) break;  // nothing more is asked
@@ -136,30 +147,38 @@ DoubtCheck StopPlanner::in_doubt(const road::KnownRoad& road, const StopStart& s
 DoubtCheck StopPlanner::plan_in_doubt(const road::KnownRoad& road, const StopStart& start,
                                       const Policy& policy, const Doubt& doubt, double least) const noexcept {
   std::array<model::Command, 2> held;
-  return in_doubt(road, start, doubt, 0.0, least,
-                  [&](std::size_t k, int i, const StopStart& at, double, double) {
-                    if (i % held_steps(policy) == 0) held[k] = command(road, at, policy);
+  const int steps = held_steps(policy);
+  return in_doubt(road, start, doubt, 0.0, least, least,
+                  [&](std::size_t k, int i, const StopStart& at, const Here& here, double, double) {
+                    if (i % steps == 0) held[k] = command(road, at, here, policy);
                     return held[k];
                   });
 }
 
 DoubtCheck StopPlanner::played(const road::KnownRoad& road, const StopStart& start, const StopPlan& stop,
-                               double time) const noexcept {
+                               double time, double enough) const noexcept {
   std::array<int, 2> point{};
-  return in_doubt(road, start, {}, time, 0.0,
-                  [&](std::size_t k, int, const StopStart&, double driven, double speed) {
-                    return safety::played(stop, driven, speed, model_.vehicle(), point[k]);
+  return in_doubt(road, start, {}, time, 0.0, enough,
+                  [&](std::size_t k, int, const StopStart&, const Here&, double driven, double speed) {
+                    return safety::played(stop, driven, speed, model_.vehicle(), &point[k]);
                   });
 }
 
-/// Of the outermost contact patch, on a road that is an arc between the axles (eq. 1a).
-double StopPlanner::edge(const road::KnownRoad& road, const StopStart& at) const noexcept {
+/// The lesser of `least` and the distance of the outermost contact patch to the edge, on a road that is an
+/// arc between the axles (eq. 1a). A car that is far enough from the edge by a bound of (1a) needs no more:
+/// by |sin e| <= |e|, and with axles no farther along the road than twice their distance, where |κ y| <= 1/2.
+double StopPlanner::least_edge(const road::KnownRoad& road, const StopStart& at, const Here& here,
+                               double least) const noexcept {
   const model::VehicleParams& car = model_.vehicle();
-  const double half_track = 0.5 * (car.track_width + car.tire_width);
+  const double half_track = 0.5 * (car.track_width + car.tire_width), curvature = here.curvature;
+  const double axle = std::max(car.front_axle, car.rear_axle), bend = std::fabs(curvature);
+  if (bend * (std::fabs(at.d) + axle) <= 0.5 && 2.0 * axle <= road::KnownRoad::kReach) {
+    const double nearer = std::fabs(at.e) * axle + bend * axle * axle + half_track;
+    const double room = std::min(here.narrowest.left - at.d, here.narrowest.right + at.d);
+    if (room - nearer > least + kRounded) return least;
+  }
   const auto [sine, cosine] = sine_cosine(at.e);
   const double beside = half_track * cosine;
-  const double curvature = road.line().demand(at.s).curvature;
-  double least = std::numeric_limits<double>::infinity();
   for (const double x : {car.front_axle, -car.rear_axle}) {
     const double across = at.d + x * sine;
     const double along = x * cosine / std::max(1.0 - curvature * across, kLeastShrink);
@@ -200,13 +219,13 @@ double StopPlanner::instability(const model::BodyMotion<double>& m, double decel
   return model::static_instability(car, v, {front, rear});
 }
 
-/// Share of a deceleration that leaves the car as stable as asked (5).
-double StopPlanner::stable_share(const model::BodyMotion<double>& m, double deceleration,
-                                 double stability) const noexcept {
-  if (!(stability > 0.0)) return 1.0;
+/// Share of a deceleration that leaves the car as stable as asked (5). `at_all`: instability() with all of
+/// it.
+double StopPlanner::stable_share(const model::BodyMotion<double>& m, double deceleration, double stability,
+                                 double at_all) const noexcept {
   const double most = 1.0 / stability;
-  double high = 1.0, at_high = instability(m, deceleration);
-  if (at_high <= most) return 1.0;
+  if (!(stability > 0.0) || at_all <= most) return 1.0;
+  double high = 1.0, at_high = at_all;
   double low = kLeastBraking, at_low = instability(m, low * deceleration);
   if (at_low >= most) return low;
   // It rises nearly in a line with the deceleration, but for where the rear axle begins to slide.
@@ -251,11 +270,11 @@ double StopPlanner::braking_share(double sideways, double deceleration, double v
   return low;
 }
 
-model::Command StopPlanner::command(const road::KnownRoad& road, const StopStart& at,
+model::Command StopPlanner::command(const road::KnownRoad& road, const StopStart& at, const Here& here,
                                     const Policy& policy) const noexcept {
   const model::VehicleParams& car = model_.vehicle();
   const double v = std::max(at.body.vx, 1.0);
-  const Curvatures curvatures = curvatures_of(road, at, policy);
+  const Curvatures curvatures = curvatures_of(road, at, here, policy);
   // The wheel that gives the yaw rate this asks for, by the model: a braking car oversteers.
   const double yaw_acceleration = kYawBandwidth * (v * curvatures.wanted - at.body.r);
   const double steer =
@@ -271,7 +290,7 @@ model::Command StopPlanner::command(const road::KnownRoad& road, const StopStart
 /// What is wanted brings the car towards the middle of the road, where there is most room on both sides, or
 /// to the line that is raced by.
 StopPlanner::Curvatures StopPlanner::curvatures_of(const road::KnownRoad& road, const StopStart& at,
-                                                   const Policy& policy) const noexcept {
+                                                   const Here& here, const Policy& policy) const noexcept {
   const model::VehicleParams& car = model_.vehicle();
   const double v = std::max(at.body.vx, 1.0);
   const double ahead = road.line().demand(at.s + (kPreview + 0.5 * policy.hold) * v).curvature;
@@ -279,28 +298,30 @@ StopPlanner::Curvatures StopPlanner::curvatures_of(const road::KnownRoad& road, 
   const double beside =
       at.d - road.target(road.edges(at.s), 0.5 * (car.track_width + car.tire_width) + policy.room);
   const double damping = road.is_raced() ? kLapDamping : kDamping;
-  return {.ahead = ahead, .wanted = ahead + back_to(beside, course, v, policy, damping)};
+  return {
+      .here = here.curvature, .ahead = ahead, .wanted = ahead + back_to(beside, course, v, policy, damping)};
 }
 
 double StopPlanner::slowing(const road::KnownRoad& road, const StopStart& at, const Braking& braking,
                             const Curvatures& curvatures) const noexcept {
   const model::VehicleParams& car = model_.vehicle();
   const double v = std::max(at.body.vx, 1.0);
-  const double bend = std::max({std::fabs(curvatures.ahead), std::fabs(curvatures.wanted),
-                                std::fabs(road.line().demand(at.s).curvature)});
+  const double bend =
+      std::max({std::fabs(curvatures.ahead), std::fabs(curvatures.wanted), std::fabs(curvatures.here)});
   const double by_tyres = 1.0 - car.steer_helper;
   const double sideways = left_sideways(by_tyres * (bend * v * v), by_tyres * (std::fabs(at.body.r) * v), v);
   const double raced = raced_slowing(road, at);
   const double useful = longitudinal_acceleration(car, lowest_throttle(car, v), v);
   const double asked = useful * braking.share;
   const double held = braking_share(sideways, -asked, v);
-  const double stable = std::min(held, stable_share(at.body, -asked, braking.stability));
+  const double at_all = braking.stability > 0.0 ? instability(at.body, -asked) : 0.0;
+  const double stable = std::min(held, stable_share(at.body, -asked, braking.stability, at_all));
   if (!(braking.foreseen < braking.stability) || stable >= held) return std::min(asked * stable, raced);
   const double wanted = foreseen(road, at, -asked) / -asked;
   if (wanted <= stable) return std::min(asked * stable, raced);
-  return std::min(
-      asked * std::clamp(wanted, stable, std::min(held, stable_share(at.body, -asked, braking.foreseen))),
-      raced);
+  return std::min(asked * std::clamp(wanted, stable,
+                                     std::min(held, stable_share(at.body, -asked, braking.foreseen, at_all))),
+                  raced);
 }
 
 /// The acceleration [m/s²] that brings the car to the planned lap's speed: a car that drives its line more
@@ -324,9 +345,9 @@ double StopPlanner::foreseen(const road::KnownRoad& road, const StopStart& at, d
   return std::min(wanted, most);
 }
 
-void StopPlanner::move(const StopCar& car, const road::KnownRoad& road, StopStart& at,
-                       const model::Command& command, const StopCar::Step& step,
-                       double steer_reach) noexcept {
+/// Moves a car by `step` where the line has the curvature `here` [1/m].
+void StopPlanner::move(const StopCar& car, const Here& here, StopStart& at, const model::Command& command,
+                       const StopCar::Step& step, double steer_reach) noexcept {
   const double dt = step.dt;
   const double steer = std::clamp(command.steer, at.body.steer - steer_reach, at.body.steer + steer_reach);
   const double asked = longitudinal_acceleration(car.vehicle(), command.throttle, at.body.vx);
@@ -339,14 +360,13 @@ void StopPlanner::move(const StopCar& car, const road::KnownRoad& road, StopStar
   const double rolls = vx < kSlow ? vx / hypot(vx, model::PredictionModel::kSpeedFloor) : 1.0;
   const double vy = rolls * 0.5 * (at.body.vy + to.vy);
   const double turned = rolls * 0.5 * dt * (at.body.r + to.r);
-  const double curvature = road.line().demand(at.s).curvature;
-  const double shrink = std::max(1.0 - curvature * at.d, kLeastShrink);
-  const double e = at.e + 0.5 * turned - 0.5 * dt * curvature * vx / shrink;
+  const double shrink = std::max(1.0 - here.curvature * at.d, kLeastShrink);
+  const double e = at.e + 0.5 * turned - 0.5 * dt * here.curvature * vx / shrink;
   const auto [sine, cosine] = sine_cosine(e);
   const double along = dt * (vx * cosine - vy * sine) / shrink;
   at.s += along;
   at.d += dt * (vx * sine + vy * cosine);
-  at.e += turned - curvature * along;
+  at.e += turned - here.curvature * along;
   at.body = to;
   at.load_along = moved.load_along;
   at.load_across = moved.load_across;
@@ -368,9 +388,11 @@ StopStart StopPlanner::advance(const road::KnownRoad& road, const StopStart& fro
   const double reach = steer_reach(dt);
   const StopCar::Step step = car_.step(dt);
   StopStart at = from;
+  Here here = road.here(at.s);
   for (int i = 0; i < steps; ++i) {
-    move(car_, road, at, command, step, reach);
-    least_edge = std::min(least_edge, edge(road, at));
+    move(car_, here, at, command, step, reach);
+    here = road.here(at.s);
+    least_edge = this->least_edge(road, at, here, least_edge);
   }
   return at;
 }
@@ -391,24 +413,27 @@ StopCheck StopPlanner::plan(const road::KnownRoad& road, const StopStart& start,
   const StopCar::Step step = car_.step(kStep);
   const double end = end_of(road, start);
   const double most_slide = std::max(kMostSlide, slide(start.body) + kSlideGrows);
-  StopCheck check{.least_edge = edge(road, start)};
+  const int held_for = held_steps(policy);
   StopStart at = start;
+  Here here = road.here(at.s);
+  StopCheck check{.least_edge = edge(road, start)};
   double driven = 0.0;
   double speed = speed_of(at.body);
   out.size = 0;
   model::Command held;
   for (int i = 0; i < kStepsPerPoint * StopPlan::kCapacity; ++i) {
-    if (i % held_steps(policy) == 0) held = command(road, at, policy);
+    if (i % held_for == 0) held = command(road, at, here, policy);
     const bool has_ended =
         speed < kStanding || !(std::fabs(at.d) < kMostOffset) || !(at.s < end) || check.least_edge < least;
     if (i % kStepsPerPoint == 0 || has_ended) out.add({at.time, driven, speed, held});
     if (has_ended) break;
     const double before = speed;
-    move(car_, road, at, held, step, reach);
+    move(car_, here, at, held, step, reach);
+    here = road.here(at.s);
     speed = speed_of(at.body);
     driven += 0.5 * kStep * (before + speed);
-    check.least_edge = std::min(check.least_edge, edge(road, at));
-    if (!(check.spins_at > 0.0) && slide(at.body) > most_slide) check.spins_at = speed;
+    check.least_edge = least_edge(road, at, here, check.least_edge);
+    if (!(check.spins_at > 0.0) && slides_more(at.body, most_slide)) check.spins_at = speed;
   }
   check.stands = speed < kStanding && at.s < end && !(check.least_edge < least) && !(check.spins_at > 0.0);
   check.distance = driven;

@@ -62,11 +62,10 @@ struct Doubt {
 
 /// The worse of two cars that differ a little from the model.
 struct DoubtCheck {
-  double edge_for =
-      std::numeric_limits<double>::infinity();            ///< least distance to the edge in a given time [m]
-  double edge = std::numeric_limits<double>::infinity();  ///< and until both have ended [m]
-  double speed = 0.0;  ///< at which one came nearer to the edge than allowed; 0: none did [m/s]
-  bool stands = true;  ///< both end at standstill on the known road, without a spin
+  double edge_for = 0.0;  ///< least distance to the edge in a given time [m]
+  double edge = 0.0;      ///< and until both have ended [m]
+  double speed = 0.0;     ///< at which one came nearer to the edge than allowed; 0: none did [m/s]
+  bool stands = true;     ///< both end at standstill on the known road, without a spin
 };
 
 /// Simulates stops along a line: path-following steering and as much braking as the curve leaves, in the
@@ -94,29 +93,35 @@ class StopPlanner {
                                          const Policy& policy, const Doubt& doubt,
                                          double least) const noexcept;
   /// The same two cars, driven by a receiver that plays `stop` without measurements; edge_for: in the first
-  /// `time` [s].
+  /// `time` [s]. Distances to the edge above `enough` >= 0 [m] are returned as `enough`, in less time.
   [[nodiscard]] DoubtCheck played(const road::KnownRoad& road, const StopStart& start, const StopPlan& stop,
-                                  double time) const noexcept;
+                                  double time,
+                                  double enough = std::numeric_limits<double>::infinity()) const noexcept;
   /// `command` for `time` [s] from `from` on: where the car is then, and how near to the edge it came.
   [[nodiscard]] StopStart advance(const road::KnownRoad& road, const StopStart& from,
                                   const model::Command& command, double time,
                                   double& least_edge) const noexcept;
   /// The command of `policy` at `at`.
   [[nodiscard]] model::Command command(const road::KnownRoad& road, const StopStart& at,
-                                       const Policy& policy) const noexcept;
+                                       const Policy& policy) const noexcept {
+    return command(road, at, road.here(at.s), policy);
+  }
   /// The acceleration [m/s²], negative, of a stop by `braking`: what the bend, and a car that shall stay
   /// stable, leave of the braking. A car of much drag may need its drive for that.
   [[nodiscard]] double slowing(const road::KnownRoad& road, const StopStart& at,
                                const Braking& braking) const noexcept {
-    return slowing(road, at, braking, curvatures_of(road, at, {}));
+    return slowing(road, at, braking, curvatures_of(road, at, road.here(at.s), {}));
   }
   /// How much nearer to the edge [m] a car comes that stands at `at` and turns back along the road at full
   /// lock: equation 6a. 0: no nearer.
   [[nodiscard]] double turning_room(const road::KnownRoad& road, const StopStart& at) const noexcept;
   /// Of the outermost contact patch to the assumed edge [m].
-  [[nodiscard]] double edge(const road::KnownRoad& road, const StopStart& at) const noexcept;
+  [[nodiscard]] double edge(const road::KnownRoad& road, const StopStart& at) const noexcept {
+    return least_edge(road, at, road.here(at.s), std::numeric_limits<double>::infinity());
+  }
 
  private:
+  using Here = road::KnownRoad::Here;
   // Chosen: a plan has a point for each Policy::hold, and 128 of them: 12.8 s.
   static constexpr double kStep = 0.05;     ///< [s] of the simulation
   static constexpr int kStepsPerPoint = 2;  ///< of the simulation, in the plan
@@ -126,27 +131,34 @@ class StopPlanner {
   }
   /// Curvatures at a place of a stop [1/m].
   struct Curvatures {
+    double here = 0.0;    ///< of the line
     double ahead = 0.0;   ///< of the line, a moment later
     double wanted = 0.0;  ///< the same, and what brings the car back to the line
   };
-  [[nodiscard]] Curvatures curvatures_of(const road::KnownRoad& road, const StopStart& at,
+  // The same at a place whose `here` was looked up before.
+  [[nodiscard]] model::Command command(const road::KnownRoad& road, const StopStart& at, const Here& here,
+                                       const Policy& policy) const noexcept;
+  [[nodiscard]] double least_edge(const road::KnownRoad& road, const StopStart& at, const Here& here,
+                                  double least) const noexcept;
+  [[nodiscard]] Curvatures curvatures_of(const road::KnownRoad& road, const StopStart& at, const Here& here,
                                          const Policy& policy) const noexcept;
   [[nodiscard]] double slowing(const road::KnownRoad& road, const StopStart& at, const Braking& braking,
                                const Curvatures& curvatures) const noexcept;
   [[nodiscard]] double instability(const model::BodyMotion<double>& m, double deceleration) const noexcept;
-  [[nodiscard]] double stable_share(const model::BodyMotion<double>& m, double deceleration,
-                                    double stability) const noexcept;
+  [[nodiscard]] double stable_share(const model::BodyMotion<double>& m, double deceleration, double stability,
+                                    double at_all) const noexcept;
   [[nodiscard]] double raced_slowing(const road::KnownRoad& road, const StopStart& at) const noexcept;
   [[nodiscard]] double foreseen(const road::KnownRoad& road, const StopStart& at, double most) const noexcept;
   [[nodiscard]] double left_sideways(double bend, double turning, double v) const noexcept;
   [[nodiscard]] double braking_share(double sideways, double deceleration, double v) const noexcept;
   template <class Law>
   [[nodiscard]] DoubtCheck in_doubt(const road::KnownRoad& road, const StopStart& start, const Doubt& doubt,
-                                    double time, double least, const Law& command_at) const noexcept;
+                                    double time, double least, double enough,
+                                    const Law& command_at) const noexcept;
   [[nodiscard]] double back_to(double beside, double course, double v, const Policy& policy,
                                double damping) const noexcept;
-  static void move(const StopCar& car, const road::KnownRoad& road, StopStart& at,
-                   const model::Command& command, const StopCar::Step& step, double steer_reach) noexcept;
+  static void move(const StopCar& car, const Here& here, StopStart& at, const model::Command& command,
+                   const StopCar::Step& step, double steer_reach) noexcept;
   [[nodiscard]] double steer_reach(double dt) const noexcept;
 
   model::PredictionModel model_;

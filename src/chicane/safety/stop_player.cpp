@@ -14,15 +14,11 @@ constexpr double kStanding = 0.5;   // [m/s] a plan that ends faster is not comp
 }  // namespace
 
 model::Command played(const StopPlan& stop, double distance, double speed,
-                      const model::VehicleParams& vehicle) noexcept {
-  int first = 0;
-  return played(stop, distance, speed, vehicle, first);
-}
-
-model::Command played(const StopPlan& stop, double distance, double speed,
-                      const model::VehicleParams& vehicle, int& point) noexcept {
+                      const model::VehicleParams& vehicle, int* from) noexcept {
+  int point = from != nullptr ? *from : 0;
   while (point + 1 < stop.size && stop.points[static_cast<std::size_t>(point + 1)].distance <= distance)
     ++point;
+  if (from != nullptr) *from = point;
   const StopPoint& here = stop.points[static_cast<std::size_t>(point)];
   const StopPoint& next = stop.points[static_cast<std::size_t>(std::min(point + 1, stop.size - 1))];
   const double length = next.distance - here.distance;

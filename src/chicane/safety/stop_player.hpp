@@ -38,11 +38,9 @@ struct StopPlan {
 
 /// What the actuators do `distance` [m] after a stop began, at `speed` [m/s] by their own wheels: the planned
 /// steering of that place, and what meets the planned speed there again. Pre: stop.size > 0.
+/// `from`: index of the point that acts there; the search begins from it, where it is not null.
 [[nodiscard]] model::Command played(const StopPlan& stop, double distance, double speed,
-                                    const model::VehicleParams& vehicle) noexcept;
-/// The same in a stop that is played on: `point` is the one that acts, from 0 on, at or before that place.
-[[nodiscard]] model::Command played(const StopPlan& stop, double distance, double speed,
-                                    const model::VehicleParams& vehicle, int& point) noexcept;
+                                    const model::VehicleParams& vehicle, int* from = nullptr) noexcept;
 
 /// The receiver's side of a broken link: what the actuators do when commands cease. A watchdog at the sender
 /// could not help. It knows the clock, its own wheel speed, and what has arrived; no position.

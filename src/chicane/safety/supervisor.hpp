@@ -69,7 +69,6 @@ class Supervisor {
     bool must_stop = false;
   };
   [[nodiscard]] Verdict judge(const Findings& findings, double time) noexcept {
-    Verdict verdict;
     const Condition* worst = nullptr;
     for (std::size_t i = 0; i < kConditions.size(); ++i) {
       const Condition& each = kConditions[i];
@@ -80,8 +79,7 @@ class Supervisor {
       else if (time - since_[i] > each.tolerated && shown_[i] >= each.measurements)
         worst = &each;
     }
-    if (worst != nullptr) verdict = {.reason = worst->reason, .must_stop = true};
-    return verdict;
+    return worst == nullptr ? Verdict{} : Verdict{worst->reason, true};
   }
   /// Something is found that a trial may end.
   [[nodiscard]] static bool wants_trial(const Findings& findings) noexcept {

@@ -35,9 +35,9 @@ double CommandHistory::lowest_throttle(double from, double until) const noexcept
 }
 
 double CommandHistory::next_change(double time, double limit) const noexcept {
-  for (std::size_t i = 0; i < count_; ++i)
-    if (entries_[i].time > time) return std::min(entries_[i].time, limit);
-  return limit;
+  std::size_t next = count_;  // from the latest on: a search begins among the commands in flight
+  while (next > 0 && entries_[next - 1].time > time) --next;
+  return next < count_ ? std::min(entries_[next].time, limit) : limit;
 }
 
 namespace {
@@ -108,8 +108,9 @@ void StateEstimator::advance(Prediction& at, double from, double to, const Comma
     const double mean_psi = 0.5 * (state.psi + psi);
     const double vx = 0.5 * (state.vx + body.vx);
     const double vy = 0.5 * (state.vy + body.vy);
-    state.x += dt * (vx * cos(mean_psi) - vy * sin(mean_psi));
-    state.y += dt * (vx * sin(mean_psi) + vy * cos(mean_psi));
+    const auto [sine, cosine] = sine_cosine(mean_psi);
+    state.x += dt * (vx * cosine - vy * sine);
+    state.y += dt * (vx * sine + vy * cosine);
     state.psi = psi;
     state.vx = std::max(body.vx, 0.0);
     state.vy = body.vy;
