@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `chicane list` and `chicane check`: the names on all shelves, and the faults of files.
+// `chicane list` prints what is shipped and built in: presets, tracks, cars, controllers and so on. `chicane
+// check` reports mistakes in files.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,17 +28,17 @@ namespace {
 using protocol::Parameter;
 using protocol::Shelf;
 
-/// Prints `begin` and a meaning: in one line for programs, in lines of 80 columns on a terminal. `columns`:
-/// width of `begin`.
-void print_entry(std::string_view begin, std::string_view meaning, std::size_t columns) {
-  constexpr std::size_t kWide = 40;  // width of `begin` from which on the meaning is on the next line; chosen
-  fmt::print("{}", begin);
+/// Prints a label and its meaning: in one line for programs, in lines of 80 columns on a terminal. `columns`:
+/// width of the label.
+void print_entry(std::string_view label, std::string_view meaning, std::size_t columns) {
+  constexpr std::size_t kWide = 40;  // [columns] a longer label gets its meaning on the next line; chosen
+  fmt::print("{}", label);
   print_sentence(stdout, meaning, columns > kWide ? 4 : columns, columns);
 }
 
-/// Files on a shelf.
+/// Files of one kind, with their descriptions.
 template <Shelf shelf>
-std::vector<ListEntry> files() {
+std::vector<ListEntry> file_entries() {
   std::vector<ListEntry> found;
   for (const protocol::Entry& entry : protocol::entries(shelf))
     found.push_back({entry.name, entry.description});
@@ -46,14 +47,14 @@ std::vector<ListEntry> files() {
 
 /// Entries of a registry whose kinds have a name and a meaning.
 template <class Kinds>
-std::vector<ListEntry> named(const Kinds& kinds) {
+std::vector<ListEntry> registry_entries(const Kinds& kinds) {
   std::vector<ListEntry> found;
   for (const auto& kind : kinds) found.push_back({std::string(kind.name), std::string(kind.meaning)});
   return found;
 }
 
 /// Settings of the schema.
-std::vector<ListEntry> parameters() {
+std::vector<ListEntry> parameter_entries() {
   std::vector<ListEntry> found;
   for (const Parameter& parameter : protocol::list())
     found.push_back({std::string(parameter.key), std::string(parameter.option.meaning)});
@@ -67,23 +68,22 @@ void print_names(const std::vector<ListEntry>& entries) {
 
 /// Prints the cars; as Markdown the table of docs/reference/shipped.md.
 void print_cars(bool is_markdown) {
-  if (!is_markdown) return print_names(files<Shelf::kCar>());
+  if (!is_markdown) return print_names(file_entries<Shelf::kCar>());
   fmt::print(
       "| car | mass [kg] | length × width [m] | wheelbase [m] | smallest radius [m] | grip [m/s²] | "
-      "downforce "
-      "at 50 m/s | drive [m/s²], [W/kg] | brakes [m/s²] | steering [deg/s], lag [ms] |\n"
+      "downforce at 50 m/s | drive [m/s²], [W/kg] | brakes [m/s²] | steering [deg/s], lag [ms] |\n"
       "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n");
   for (const protocol::Entry& entry : protocol::entries(Shelf::kCar)) {
     const Result<scenario::Scenario> scenario = protocol::compose({"", {{"car", entry.name}}});
     if (!scenario) continue;  // `chicane check` reports the fault
     const model::VehicleParams& car = scenario->vehicle;
-    const double front = car.wheelbase() / std::tan(car.steer_limit);
+    const double front_axle_radius = car.wheelbase() / std::tan(car.steer_limit);
     fmt::print(
         "| `{}` | {:.4g} | {:.3g} × {:.3g} | {:.3g} | {:.3g} | {:.3g} | {:.0f} % | {:.3g}, {:.3g} | {:.3g} | "
         "{:.3g}, {:.3g} |\n",
-        entry.name, car.mass, car.length, car.width, car.wheelbase(), std::hypot(front, car.rear_axle),
-        car.cornering_friction() * car.load_constant, 100.0 * (car.load(50.0) / car.load_constant - 1.0),
-        car.drive_acceleration, car.drive_power_per_mass,
+        entry.name, car.mass, car.length, car.width, car.wheelbase(),
+        std::hypot(front_axle_radius, car.rear_axle), car.cornering_friction() * car.load_constant,
+        100.0 * (car.load(50.0) / car.load_constant - 1.0), car.drive_acceleration, car.drive_power_per_mass,
         std::min(car.brake_acceleration, car.cornering_friction() * car.load_constant),
         radians_to_degrees(car.steer_rate_limit), 1e3 * car.steer_lag);
   }
@@ -111,17 +111,8 @@ std::string range_of(const Parameter& parameter) {
                      parameter.option.may_be_infinite ? ", inf" : "");
 }
 
-/// Prints a line for each setting.
-void print_rows() {
-  for (const Parameter& parameter : protocol::list()) {
-    print_entry(fmt::format("{:<42} {:<14} {:<13} ", parameter.key, default_of(parameter),
-                            parameter.option.unit.name),
-                parameter.option.meaning, 72);
-  }
-}
-
 /// Prints docs/reference/configuration.md.
-void print_page() {
+void print_configuration_page() {
   fmt::print(
       "# Configuration\n\n"
       "Everything tunable, made by `chicane list parameters --markdown`. A key is the same in presets, "
@@ -169,25 +160,32 @@ void print_faults(bool is_markdown) {
   }
 }
 
-/// Prints the settings.
-void print_parameters(bool is_markdown) { is_markdown ? print_page() : print_rows(); }
+/// Prints a line for each setting; as Markdown docs/reference/configuration.md.
+void print_parameters(bool is_markdown) {
+  if (is_markdown) return print_configuration_page();
+  for (const Parameter& parameter : protocol::list()) {
+    print_entry(fmt::format("{:<42} {:<14} {:<13} ", parameter.key, default_of(parameter),
+                            parameter.option.unit.name),
+                parameter.option.meaning, 72);
+  }
+}
 
-/// Shelf of `chicane list`.
+/// One list of `chicane list`, such as the cars.
 struct List {
   std::string_view name;
   std::vector<ListEntry> (*entries)();
   void (*print)(bool is_markdown) = nullptr;                ///< null: prints names and meanings
-  bool is_in_overview = true;                               ///< shown by `chicane list` without a shelf
-  Result<void> (*check)() = [] { return Result<void>(); };  ///< error if the shelf cannot be read
+  bool is_in_overview = true;                               ///< shown by `chicane list` without a name
+  Result<void> (*check)() = [] { return Result<void>(); };  ///< error if the files cannot be read
 
-  /// Prints the shelf.
+  /// Prints the list.
   void show(bool is_markdown) const { print != nullptr ? print(is_markdown) : print_names(entries()); }
 };
 
-/// Shelf of files.
+/// List of files.
 template <Shelf shelf>
 constexpr List list_of(std::string_view name, void (*print)(bool) = nullptr) {
-  return {name, files<shelf>, print, true, [] { return protocol::check_shelf(shelf); }};
+  return {name, file_entries<shelf>, print, true, [] { return protocol::check_shelf(shelf); }};
 }
 
 constexpr std::array kLists{
@@ -195,10 +193,10 @@ constexpr std::array kLists{
     list_of<Shelf::kTrack>("tracks"),
     list_of<Shelf::kCar>("cars", print_cars),
     list_of<Shelf::kScenario>("scenarios"),
-    List{"controllers", [] { return named(controller::Registry::kinds()); }},
-    List{"plants", [] { return named(sim::plants()); }},
-    List{"faults", [] { return named(sim::fault_kinds()); }, print_faults, false},
-    List{"parameters", parameters, print_parameters, false},
+    List{"controllers", [] { return registry_entries(controller::Registry::kinds()); }},
+    List{"plants", [] { return registry_entries(sim::plants()); }},
+    List{"faults", [] { return registry_entries(sim::fault_kinds()); }, print_faults, false},
+    List{"parameters", parameter_entries, print_parameters, false},
 };
 
 }  // namespace
@@ -216,37 +214,39 @@ std::vector<ListEntry> list_entries(std::string_view shelf) {
 }
 
 ExitCode list(const Options& options) {
-  bool is_first = true;
+  const bool is_overview = options.shelf.empty();
+  std::string_view separator;
   for (const List& list : kLists) {
-    if (const auto there = list.check(); !there && (options.shelf.empty() || list.name == options.shelf))
-      return report(there.error());
-    if (!options.shelf.empty() && list.name == options.shelf) list.show(options.is_markdown);
-    if (!options.shelf.empty() || !list.is_in_overview) continue;
-    fmt::print("{}{}\n", std::exchange(is_first, false) ? "" : "\n", list.name);
-    list.show(false);
+    if (!is_overview && list.name != options.shelf) continue;
+    if (const auto readable = list.check(); !readable) return report(readable.error());
+    if (is_overview && !list.is_in_overview) continue;
+    if (is_overview) fmt::print("{}{}\n", std::exchange(separator, "\n"), list.name);
+    list.show(options.is_markdown && !is_overview);
   }
   return kSuccess;
 }
 
 namespace {
 
-/// Length in metres as text, with a digit more for roads of model cars.
+constexpr double kStraight = 1e-6;  // [1/m] curvature below which a road is straight: rounding; chosen
+
+/// Length in metres as text, with a digit more below 3 m (chosen), as on roads of model cars.
 std::string metres(double length) { return fmt::format("{:.{}f}", length, length < 3.0 ? 2 : 1); }
 
 /// Road of a run in words.
 std::string road_in_words(const road::Track& track) {
   const double length = track.centre().length();
   const double step = std::min(1.0, length / 1000.0);  // [m] between samples; chosen
-  double narrowest = 1e9;
+  double narrowest = track.left_width(0.0) + track.right_width(0.0);
   double sharpest = 0.0;
   for (double s = 0.0; s < length; s += step) {
     narrowest = std::min(narrowest, track.left_width(s) + track.right_width(s));
     sharpest = std::max(sharpest, std::abs(track.centre().at(s).curvature));
   }
-  std::string text =
-      fmt::format("{} track, {:.1f} m long, at least {} m wide, {}",
-                  track.centre().is_closed() ? "closed" : "open", length, metres(narrowest),
-                  sharpest > 1e-6 ? fmt::format("tightest radius {} m", metres(1.0 / sharpest)) : "straight");
+  std::string text = fmt::format(
+      "{} track, {:.1f} m long, at least {} m wide, {}", track.centre().is_closed() ? "closed" : "open",
+      length, metres(narrowest),
+      sharpest > kStraight ? fmt::format("tightest radius {} m", metres(1.0 / sharpest)) : "straight");
   if (track.crossings() > 0)
     text += fmt::format(", crosses itself in {} {}", track.crossings(),
                         track.crossings() == 1 ? "place" : "places");

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// The fastest lap that a simulated car can drive on a closed road: search, result, and comparison of driven
+// laps with it.
 #pragma once
 
 #include <array>
@@ -15,9 +17,6 @@
 #include "chicane/road/track.hpp"
 #include "chicane/sim/double_track.hpp"
 #include "chicane/sim/plant.hpp"
-
-/// The fastest lap that a simulated car can drive on a closed road: search, result, and comparison of driven
-/// laps with it.
 
 namespace chicane::lap_time {
 
@@ -95,7 +94,8 @@ struct PlantLimitOptions {
   int laps = 4;               ///< laps of the witness, after a flying start
   /// Limit of the work [s], > 0 (PlanProgress). The best lap so far is the answer then.
   double budget = std::numeric_limits<double>::infinity();
-  /// Called with the progress, and the lap time, after each iteration; false ends the search. May be empty.
+  /// Called after each iteration with its stage, its number and its lap time [s]. False ends the search. May
+  /// be empty.
   std::function<bool(std::string_view stage, int iteration, double lap_time)> go_on{};
   std::function<void(const PlanProgress&)> on_progress{};  ///< progress towards the optimum; may be empty
 };

@@ -90,13 +90,13 @@ class VehiclePlan final : public PlanModelOf<PlanModel, VehicleModel> {
 
 }  // namespace
 
-Result<void> can_be_driven(const road::Track& track, const model::VehicleParams& vehicle, double beside,
+Result<void> can_be_driven(const road::Track& track, const model::VehicleParams& vehicle, double max_offset,
                            double scale) {
   if (!track.centre().is_closed()) return {};
   const CarSize size = VehiclePlan(vehicle).size();
   // A tenth of the steering lock stays for control (1.1). A road whose middle has a fifth more room than that
   // (1.32) needs no search for a line.
-  const Fit fit{.reserve = 1.1, .surely = 1.32, .beside = beside, .scale = scale};
+  const Fit fit{.reserve = 1.1, .surely = 1.32, .beside = max_offset, .scale = scale};
   Result<void> fits = fits_road(track, size, fit);
   constexpr std::string_view kPrefix = "limit: ";
   if (!fits) return fail(fits.error().code, fits.error().message.substr(kPrefix.size()));

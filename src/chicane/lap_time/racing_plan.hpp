@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Plans the fastest lap that a controller can follow, with reserves, as the line to drive by.
 #pragma once
 
 #include <functional>
@@ -11,24 +12,23 @@
 #include "chicane/road/racing_road.hpp"
 #include "chicane/road/track.hpp"
 
-/// Plans the fastest lap that a controller can follow.
-
 namespace chicane::lap_time {
 
 /// Reserves of a racing plan, and limits of its search.
 struct RacingPlanOptions {
   double margin = 0.0;       ///< distance of each contact patch to its edge, kerb included [m], >= 0
   double grip_share = 1.0;   ///< used share of the friction, (0, 1]
-  double slip_share = 1.0;   ///< largest axle slip over the slip of peak force, (0, 2]
+  double slip_share = 1.0;   ///< largest axle slip, as a share of the slip at peak force, (0, 2]
   double brake_share = 1.0;  ///< used share of the largest useful deceleration, (0, 1]
   bool slides = false;       ///< permits slip beyond the peak, up to model::SlidingBound
   double delay = model::SlidingBound::kAssumedDelay;  ///< delay of the controller, for that bound [s], > 0
   double speed_limit = 100.0;                         ///< largest speed [m/s], > 3
-  double time_step = 0.08;                            ///< time between nodes, about [s]; [0.01, 0.2]
-  /// Limit of the work [s], > 0 (PlanProgress). The best plan so far is the answer then, the same on every
-  /// machine.
+  double time_step = 0.08;  ///< approximate time between nodes [s], in [0.01, 0.2]; chosen
+  /// Limit of the work, in seconds of a reference machine: counted, not measured (PlanProgress::work), > 0.
+  /// When it is spent the best plan so far is returned, the same on every machine.
   double budget = std::numeric_limits<double>::infinity();
-  /// Called with the progress, and the lap time, after each iteration; false ends the search. May be empty.
+  /// Called after each iteration with its number and its lap time [s], and with 0, 0 while the road is
+  /// checked. False ends the search. May be empty.
   std::function<bool(int iteration, double lap_time)> go_on{};
   std::function<void(const PlanProgress&)> on_progress{};  ///< called after each iteration; may be empty
 };
@@ -47,12 +47,12 @@ struct RacingPlanOptions {
                                                         const model::VehicleParams& vehicle,
                                                         const RacingPlanOptions& options = {});
 
-/// Checks that a controller can drive the road: it is wide enough everywhere, and no bend needs all of the
-/// car's lock. The car's centre of mass stays within `beside` [m] of the middle of the road. `scale`: factor
-/// of the lengths in the message. Open roads are not checked. Fails with kInvalidArgument "the bend at s =
-/// 211.2 m leaves room for a radius of 10.60 m, and the car's full lock drives no less than 10.44 m", or with
-/// the width.
+/// Checks that a controller can drive a closed road: it is wide enough everywhere, and no bend needs all of
+/// the car's lock. Any open road passes unchecked. `max_offset`: largest distance of the car's centre of mass
+/// from the middle of the road [m]. `scale`: factor of the lengths in the message. Fails with
+/// kInvalidArgument "the bend at s = 211.2 m leaves room for a radius of 10.60 m, and the car's full lock
+/// drives no less than 10.44 m", or with the width.
 [[nodiscard]] Result<void> can_be_driven(const road::Track& track, const model::VehicleParams& vehicle,
-                                         double beside, double scale = 1.0);
+                                         double max_offset, double scale = 1.0);
 
 }  // namespace chicane::lap_time

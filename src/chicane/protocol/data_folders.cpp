@@ -69,14 +69,17 @@ DataOrigins data_origins() {
 
 std::vector<std::string> data_folders(const DataOrigins& origins, std::string_view kind) {
   std::vector<std::string> found;
-  const auto add = [&](const fs::path& place) {
+  std::vector<fs::path> known;  // the same folders, with links resolved
+  const auto add = [&](const fs::path& place, bool is_as_spelled = false) {
     std::error_code missing;
-    const fs::path real = fs::canonical(place / kind, missing);
-    const std::string folder = missing ? (place / kind).lexically_normal().string() : real.string();
-    if (std::find(found.begin(), found.end(), folder) == found.end()) found.push_back(folder);
+    fs::path folder = fs::canonical(place / kind, missing);
+    if (missing) folder = fs::absolute(place / kind, missing).lexically_normal();
+    if (std::find(known.begin(), known.end(), folder) != known.end()) return;
+    known.push_back(folder);
+    found.push_back((is_as_spelled ? place / kind : folder).string());
   };
-  found.push_back((fs::path(".") / kind).string());
-  if (!origins.environment.empty()) found.push_back((fs::path(origins.environment) / kind).string());
+  add(".", true);
+  if (!origins.environment.empty()) add(origins.environment, true);
   for (const std::string& file : {origins.program, origins.shared_object}) {
     if (file.empty()) continue;
     const fs::path folder = fs::path(file).parent_path();

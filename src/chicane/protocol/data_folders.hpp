@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Folders that have the shipped files: presets, cars, tracks, scenarios.
+// Search path of the shipped files: presets, cars, tracks, scenarios; and the build ids of a program.
 #pragma once
 
 #include <string>
@@ -13,7 +13,8 @@ struct DataOrigins {
   std::string environment{};  ///< value of the variable CHICANE_DATA_DIR: a folder with the folder `presets`
   std::string program{};      ///< file of the running program, absolute
   std::string shared_object{};  ///< file of the shared object that contains this library, absolute
-  std::string header{};         ///< absolute path of this header in the build's installation
+  /// Path of this header in the installation that the program was compiled with; empty in a build tree.
+  std::string header{};
 };
 
 /// Origins of this process, from the environment and, where the system has it, /proc. Without /proc the
@@ -21,12 +22,12 @@ struct DataOrigins {
 [[nodiscard]] DataOrigins data_origins();
 
 /// Folders in which a file of `kind` ("presets") is searched, in this order, each once, whether it exists or
-/// not:
+/// not. The first two are returned as spelled here, the others with links resolved:
 ///
 ///   1. ./presets;
 ///   2. presets in the folder that CHICANE_DATA_DIR names;
-///   3. share/chicane/presets in the program's folder and in the two folders above it: of an unpacked folder,
-///      of an installation that may have been moved, of a build tree;
+///   3. share/chicane/presets in the program's folder (an unpacked archive), in the folder above it (an
+///      installation, which may have been moved), and two above it (a build tree);
 ///   4. the same for the shared object that contains the library, such as a Python module;
 ///   5. share/chicane/presets of the installation whose headers the program was compiled with;
 ///   6. share/chicane/presets of the prefix that the library was configured for, and of /usr.
@@ -44,8 +45,9 @@ extern "C" {
 
 namespace chicane::protocol {
 
-/// GNU build ids of this program and of its shared libraries, one after the other. They differ if any of the
-/// code does. Empty if the program has no build id (`-Wl,--build-id=none`). Takes some 10 µs.
+/// GNU build ids of this program and of its shared libraries, one after the other. The texts of two programs
+/// differ if their code differs. Empty if the program has no build id (`-Wl,--build-id=none`). Takes some
+/// 10 µs.
 [[nodiscard]] std::string build_ids();
 
 }  // namespace chicane::protocol

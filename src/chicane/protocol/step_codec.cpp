@@ -7,49 +7,55 @@
 namespace chicane::protocol {
 namespace {
 
-/// Fields of the message.
+constexpr int kMeaningColumn = 24;  // at which meanings begin in the definition; chosen
+
+/// Fields of the message. Differs from Step where a message has no such type.
 struct StepMessage {
   Step step{};
-  std::int8_t rung = 0;
+  std::int8_t rung = 0;             ///< controller::Rung as a number
   std::vector<double> waypoints{};  ///< x and y in turn
-  model::Command manual{};
-  bool is_manual = false;
+  model::Command manual{};          ///< zero without a person's command
+  bool is_manual = false;           ///< Step::manual has a value
 };
 
+/// Visits the fields in the order of their bytes: another order, or a field more, makes recordings
+/// unreadable.
 void step_rows(auto& row, auto& message) {
   auto& step = message.step;
   auto& seen = step.measurement;
-  row("cycle", "as in Frame", step.cycle);
-  row("time", "of the measurement [s]", seen.time);
-  row("x", "measured, world frame [m]", seen.x);
-  row("y", "[m]", seen.y);
-  row("psi", "yaw [rad], left positive", seen.psi);
-  row("speed", "[m/s]", seen.speed);
-  row("steer", "that acted before [rad], left positive", seen.steer);
-  row("throttle", "that acted before [-1, 1]", seen.throttle);
-  row("delay", "expected until the command acts [s]", seen.delay);
-  row("command_steer", "sent [rad], left positive", step.command.steer);
-  row("command_throttle", "sent [-1, 1]", step.command.throttle);
-  row("step_time", "of the control step [s], wall clock", step.step_time);
-  row("rung", "source of the command, as in Frame", message.rung);
-  row("gated", "the command gate changed it", step.gated);
-  row("waypoints", "x and y in turn, world frame [m]", message.waypoints);
-  row("gate_interval", "since the command before [s]; 0 skips the rate limit", step.gate_interval);
-  row("longest_interval", "the longest lately [s]", step.longest_interval);
-  row("manual_steer", "a person's command, while is_manual [rad], left positive", message.manual.steer);
-  row("manual_throttle", "[-1, 1]", message.manual.throttle);
-  row("deadline_spent_at", "the solver's first question to the clock that was answered with \"late\"; 0 none",
+  row("cycle", "number of the control cycle", step.cycle);
+  row("time", "time of the measurement [s]", seen.time);
+  row("x", "measured position, world frame [m]", seen.x);
+  row("y", "measured position, world frame [m]", seen.y);
+  row("psi", "measured yaw angle [rad], left positive", seen.psi);
+  row("speed", "measured speed [m/s]", seen.speed);
+  row("steer", "steering angle in effect at the measurement [rad], left positive", seen.steer);
+  row("throttle", "throttle in effect at the measurement [-1, 1]", seen.throttle);
+  row("delay", "expected delay from the measurement until the command acts [s]", seen.delay);
+  row("command_steer", "sent steering angle [rad], left positive", step.command.steer);
+  row("command_throttle", "sent throttle [-1, 1]", step.command.throttle);
+  row("step_time", "duration of the control step [s], wall clock", step.step_time);
+  row("rung", "source of the command: 0 the controller, others as rung of Frame", message.rung);
+  row("gated", "whether the command gate changed the command", step.gated);
+  row("waypoints", "measured waypoints, x and y in turn, world frame [m]", message.waypoints);
+  row("gate_interval", "time since the previous command [s]; 0: its rate is not limited", step.gate_interval);
+  row("longest_interval", "longest recent interval between commands [s]", step.longest_interval);
+  row("manual_steer", "steering angle of a person, if is_manual [rad], left positive", message.manual.steer);
+  row("manual_throttle", "throttle of a person, if is_manual [-1, 1]", message.manual.throttle);
+  row("deadline_spent_at",
+      "number of the clock reading at which the solver first found its deadline passed; 0: none",
       step.deadline_spent_at);
-  row("begins", "controller and gate had forgotten everything", step.begins);
-  row("has_measurement", "false: what came was unusable, the controller was not asked", step.has_measurement);
-  row("is_manual", "a person drove", message.is_manual);
+  row("begins", "whether controller and gate were reset before this step", step.begins);
+  row("has_measurement", "false: the measurement was missing or unusable, the controller did not run",
+      step.has_measurement);
+  row("is_manual", "whether a person drove", message.is_manual);
 }
 
 }  // namespace
 
 std::string_view step_schema() {
   static const std::string schema = [] {
-    DefinedRows rows("", 24);
+    DefinedRows rows("", kMeaningColumn);
     const StepMessage message;
     step_rows(rows, message);
     return rows.text();
@@ -77,6 +83,7 @@ std::string encode_step(const telemetry::Frame& frame) {
   return written([&](auto& row) { step_rows(row, std::as_const(message)); });
 }
 
+/// Checks each value that its type does not bound: the bytes may come from any program.
 std::optional<Step> decode_step(std::string_view bytes) {
   ReadRows rows(bytes);
   StepMessage message;

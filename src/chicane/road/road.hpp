@@ -27,15 +27,15 @@ struct RoadOptions {
 /// Road as a controller knows it: remembered waypoints, a smooth reference line along them with its speeds,
 /// and the room left and right of that line. All memory is reserved at construction.
 ///
-/// Until the loop closes, the line is a stretch from a little behind the car to the last waypoint seen, and
-/// is planned again with each new waypoint. Then the lap is planned during the drive, kLapWork units for each
-/// kShare of time, and replaces the stretch when it is ready: after 3 to 5 s for a lap of 1.3 km, however
-/// rarely measurements come. So add() is bounded, by about 30 µs when it is called every kShare
-/// (docs/controller.md), and does the same work for the same measurements.
+/// Until the loop closes, the line is a stretch from up to 60 m before the first waypoint of the last
+/// measurement to its last one, and is planned again with each new waypoint. Then the lap is planned during
+/// the drive, with 15 µs of work for each 40 ms, and replaces the stretch when it is ready: after 3 to 5 s
+/// for a lap of 1.3 km, however rarely measurements come. So add() is bounded, by about 30 µs when it is
+/// called every 40 ms (docs/controller.md), and does the same work for the same measurements.
 class Road {
  public:
   Road(const RoadOptions& options, const model::VehicleParams& vehicle);
-  /// Forgets all waypoints.
+  /// Forgets all waypoints, and the line.
   void reset() noexcept;
   /// Applies other settings to the same road: if they differ, everything is planned again.
   void configure(const RoadOptions& options, const model::VehicleParams& vehicle) noexcept;
@@ -43,7 +43,7 @@ class Road {
   /// Adds the waypoints of a measurement to the map, and does this cycle's share of the planning.
   void add(const model::Measurement& now) noexcept;
 
-  /// Reference line in W; empty while no waypoints are known.
+  /// Reference line in the world frame; empty while no waypoints are known.
   [[nodiscard]] const ReferenceLine& line() const noexcept {
     return is_lap_ ? laps_[current_lap_] : stretch_;
   }
@@ -64,13 +64,12 @@ class Road {
   }
 
  private:
-  // Chosen so that a cycle of 40 ms spends 15 µs on a lap, which is planned before the car has gone far on
-  // it.
+  // Chosen: 15 µs in a cycle of 40 ms, and a lap of 1.3 km is planned after 3 to 5 s.
   static constexpr double kShare = 0.04;     ///< time that allows one share of planning [s]
-  static constexpr int kMostShares = 8;      ///< limit of shares in one measurement, after any time
+  static constexpr int kMostShares = 8;      ///< most shares at one measurement
   static constexpr int kLapWork = 1500;      ///< units of work of LinePlanner in each share, 10 ns each
   static constexpr int kStretchKnots = 128;  ///< limit of a stretch; 380 m, more than six waypoints reach
-  static constexpr double kBehind = 60.0;    ///< start of a stretch before the first waypoint seen [m]
+  static constexpr double kBehind = 60.0;    ///< most of a stretch before the first waypoint seen [m]; chosen
 
   void configure_planners() noexcept;
   /// Number of shares due at a measurement, by the time since the last one.

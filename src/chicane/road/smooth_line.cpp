@@ -22,13 +22,14 @@ constexpr int kOverlapPoints = 16;
 constexpr double kOverlapLengths = 30.0;
 constexpr std::size_t kMaxKnots = 200'000;  // limit of a line's knots; chosen: bounds memory
 constexpr double kMinLength = 1.0;          // [m] least length of a line
-constexpr double kLeastShare = 0.01;   // bounds of a plausible length of the line, as shares of the length
-constexpr double kMostShare = 2.0;     // of its points' chords
+constexpr double kLeastShare = 0.01;   // least plausible length of the line over that of its points' chords
+constexpr double kMostShare = 2.0;     // largest such ratio; both chosen
 constexpr double kMostUnrolled = 4e6;  // limit of unrolled points; chosen: bounds memory
-constexpr double kMaxShareOfLength = 0.02;  // limit of ℓ as a share of the length of a short line
-constexpr double kMostUneven = 4.0;         // limit for even points: ratio of a gap to the median around it
-constexpr std::ptrdiff_t kNearGaps = 3;     // gaps on each side of one that the median is taken of
-constexpr double kMostNoise = 1.0;          // [m] standard deviation that cross-validation begins with
+constexpr double kMaxShareOfLength =
+    0.02;  // limit of the smoothing length ℓ as a share of the length of a short line
+constexpr double kMostUneven = 4.0;      // limit for even points: ratio of a gap to the median around it
+constexpr std::ptrdiff_t kNearGaps = 3;  // gaps on each side of one that the median is taken of
+constexpr double kMostNoise = 1.0;       // [m] standard deviation that cross-validation begins with
 constexpr double kLeastShareOfGap = 0.1;  // least ℓ over the median gap: a line of a shorter ℓ interpolates
 constexpr std::size_t kMostLeftOut = 200;  // points that cross-validation leaves out; chosen: bounds the time
 

@@ -31,9 +31,9 @@ struct FaultOutcome {
   FaultTrial trial;
   double at = 0.0;     ///< start of the fault, clock of the run [s]: `--fault NAME@at` repeats it
   double until = 0.0;  ///< end of the trial [s]: `--set time_limit_s=` repeats it
-  /// Least gap of a tyre to the edge since the start of the fault [m]; < 0: off the road.
+  /// Smallest distance of a tyre to the road's edge since the start of the fault [m]; < 0: off the road.
   double least_edge = std::numeric_limits<double>::infinity();
-  double end_speed = 0.0;  ///< speed at the end of the trial [m/s]
+  double end_speed = 0.0;  ///< true speed at the end of the trial [m/s]; 0 for a run without a true state
   int not_controller = 0;  ///< control steps in which another command than the controller's was sent
   [[nodiscard]] bool has_left_road() const noexcept { return least_edge < 0.0; }
   [[nodiscard]] bool stands() const noexcept { return end_speed < kStanding; }
@@ -42,9 +42,10 @@ struct FaultOutcome {
 
 /// Time for which a trial continues after a fault that ends [s]; chosen.
 inline constexpr double kSettling = 10.0;
-/// Longest time after the start of a fault that lasts [s]. Chosen: longer than any stop; the trial ends
-/// earlier once the car has stood for a second.
+/// Longest time after the start of a fault that lasts [s]. Chosen: longer than any stop. The trial
+/// ends earlier, but not in its first 5 s, once the car has stood for a second.
 inline constexpr double kLongestWait = 30.0;
+
 /// Longest time from the start of a fault of this `duration` [s] to the trial's end [s].
 [[nodiscard]] constexpr double longest_trial(double duration) noexcept {
   return duration >= kLasting ? kLongestWait : duration + kSettling;
@@ -54,6 +55,7 @@ inline constexpr double kLongestWait = 30.0;
 struct Excursion {
   double from = 0.0, to = 0.0;
 };
+
 /// The flying lap of a scenario without faults: its second lap. On an open road: from standstill to the end.
 struct FlyingLap {
   double begins = 0.0;           ///< start, by the clock of the run [s]
@@ -62,10 +64,12 @@ struct FlyingLap {
   /// Whether the car is off the road at any time in [from, to], by the clock of the run [s].
   [[nodiscard]] bool is_off_within(double from, double to) const noexcept;
 };
-/// Drives the scenario without a fault, for `wait` [s] longer than the flying lap. kInvalidArgument when two
+
+/// Drives the scenario without a fault, and for `wait` [s] on after the flying lap. kInvalidArgument when two
 /// laps, or an open road, are not driven in half an hour.
 [[nodiscard]] Result<FlyingLap> drive_undisturbed(const scenario::Scenario& scenario,
                                                   double wait = kLongestWait, const Factories& make = {});
+
 /// Drives trials of `scenario` without the scenario's own faults. The time before the faults is driven once:
 /// at the onset of its fault each trial continues a copy of the run, on at most `jobs` threads.
 /// Deterministic; no trial depends on others; outcomes are in the order of the trials. `on_done` gets the
@@ -75,4 +79,5 @@ struct FlyingLap {
 [[nodiscard]] Result<std::vector<FaultOutcome>> drive_trials(
     const scenario::Scenario& scenario, const FlyingLap& lap, const std::vector<FaultTrial>& trials, int jobs,
     const std::function<bool(std::size_t)>& on_done = {}, const Factories& make = {});
+
 }  // namespace chicane::run

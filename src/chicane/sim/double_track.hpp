@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The four-wheel plant: its parameters, their conversion from and to a controller's model, and its motion.
 #pragma once
 
 #include <array>
@@ -13,8 +14,6 @@
 #include "chicane/model/vehicle.hpp"
 #include "chicane/model/wheel_forces.hpp"
 #include "chicane/sim/plant.hpp"
-
-/// The four-wheel plant: its parameters, their conversion from and to a controller's model, and its motion.
 
 namespace chicane::sim {
 

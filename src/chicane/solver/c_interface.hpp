@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Makes a C++ problem usable through the C interface (chicane/solver.h).
 #pragma once
 
 #include <algorithm>
@@ -30,7 +31,7 @@ namespace chicane::solver {
 ///     static constexpr int kHorizon;
 ///     static constexpr const char* kName;         // for chicane_problem_name()
 ///     static constexpr int kParameters;           // optional: number of parameters
-///     StageData<kHorizon + 1> p[…];               // optional: the parameters come first
+///     StageData<kHorizon + 1> p[…];               // optional: parameters first, then data of its own
 ///     std::array<double, kNu> lower[kHorizon];    // optional: as input_lower() returns them
 ///     std::array<double, kNu> upper[kHorizon];    // optional: as input_upper() returns them
 ///     static constexpr double kCostOffset;        // optional: added to costs
@@ -40,7 +41,7 @@ class CSolver final : public chicane_solver {
   static constexpr int kHorizon = P::kHorizon;
   static constexpr std::size_t kNx = P::kNx, kNu = P::kNu, kNc = P::kNc;
 
-  explicit CSolver(const chicane_problem* own) noexcept : chicane_solver{own, 0} {
+  explicit CSolver(const chicane_problem* table) noexcept : chicane_solver{table, 0} {
     trajectory_.horizon = kHorizon;
   }
 
@@ -59,7 +60,7 @@ class CSolver final : public chicane_solver {
             equality_count<P>(),
             terminal_equality_count<P>(),
             terminal_constraint_count<P>(),
-            sizeof(CSolver) + alignof(CSolver)};
+            sizeof(CSolver) + alignof(CSolver)};  // the caller's memory may have any alignment
   }
 
   void set_options(const chicane_options& options) noexcept {
@@ -73,7 +74,7 @@ class CSolver final : public chicane_solver {
   /// Calls visit(number) for each entry of an array, in its order: by reference, or by value for arrays that
   /// only a solve writes.
   template <class Self, class Visit>
-  static void each(Self& self, chicane_array array, const Visit& visit) noexcept {
+  static void for_each_entry(Self& self, chicane_array array, const Visit& visit) noexcept {
     const auto rows = [&](auto& of, std::size_t count) {
       for (std::size_t k = 0; k < count; ++k) {
         for (auto& value : of[k]) visit(value);
@@ -129,15 +130,18 @@ class CSolver final : public chicane_solver {
         break;
     }
   }
+
+  // As the functions of the same names in chicane/solver.h.
+  /// Skips arrays that only a solve writes; chicane_set() has refused them.
   template <class T>
   void set(chicane_array array, const T* from) noexcept {
-    each(*this, array, [&](auto&& value) {
+    for_each_entry(*this, array, [&](auto&& value) {
       if constexpr (std::is_lvalue_reference_v<decltype(value)>) value = static_cast<double>(*from++);
     });
   }
   template <class T>
   void get(chicane_array array, T* to) const noexcept {
-    each(*this, array, [&](double value) { *to++ = static_cast<T>(value); });
+    for_each_entry(*this, array, [&](double value) { *to++ = static_cast<T>(value); });
   }
 
   template <class T>
@@ -148,22 +152,22 @@ class CSolver final : public chicane_solver {
             ? Deadline::after(std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * budget_s_)))
             : Deadline::never();
     const auto done = solver_.solve(problem_, state(x0), trajectory_, deadline);
-    report = {static_cast<int>(done.status),
-              usable(done.status) ? 1 : 0,
-              done.iterations,
-              done.cost + offset(),
-              done.stationarity,
-              done.defect,
-              done.complementarity,
-              done.violation,
-              done.worst_stage,
-              done.worst_constraint,
-              0.0,
-              0,
-              -1,
-              -1,
-              0.0,
-              done.gap};
+    report = {.status = static_cast<int>(done.status),
+              .is_usable = usable(done.status) ? 1 : 0,
+              .iterations = done.iterations,
+              .cost = done.cost + offset(),
+              .stationarity = done.stationarity,
+              .defect = done.defect,
+              .complementarity = done.complementarity,
+              .violation = done.violation,
+              .violated_stage = done.worst_stage,
+              .violated_constraint = done.worst_constraint,
+              .miss = 0.0,
+              .miss_kind = 0,
+              .miss_stage = -1,
+              .miss_row = -1,
+              .seconds = 0.0,
+              .gap = done.gap};
     if constexpr (HardProblem<P>) {
       report.miss = done.miss;
       report.miss_kind = static_cast<int>(done.kind);
@@ -182,6 +186,7 @@ class CSolver final : public chicane_solver {
   bool feedback(const T* x0) noexcept {
     return solver_.feedback(state(x0), trajectory_).is_solved;
   }
+  /// Moves the guess one stage ahead. The last state and input stay, and so are there twice.
   void shift() noexcept {
     std::copy(trajectory_.x.begin() + 1, trajectory_.x.begin() + kHorizon + 1, trajectory_.x.begin());
     std::copy(trajectory_.u.begin() + 1, trajectory_.u.begin() + kHorizon, trajectory_.u.begin());
@@ -208,11 +213,11 @@ class CSolver final : public chicane_solver {
 
 namespace detail {
 template <class P>
-CSolver<P>* own(chicane_solver* solver) noexcept {
+CSolver<P>* solver_of(chicane_solver* solver) noexcept {
   return static_cast<CSolver<P>*>(solver);
 }
 template <class P>
-const CSolver<P>* own(const chicane_solver* solver) noexcept {
+const CSolver<P>* solver_of(const chicane_solver* solver) noexcept {
   return static_cast<const CSolver<P>*>(solver);
 }
 using Handle = chicane_solver*;
@@ -224,21 +229,21 @@ inline constexpr chicane_problem kProblemForC{
     .create = [](const chicane_problem* self, void* memory) -> Handle {
       return ::new (memory) CSolver<P>(self);
     },
-    .destroy = [](Handle s) { own<P>(s)->~CSolver<P>(); },
-    .set_options = [](Handle s, const chicane_options* options) { own<P>(s)->set_options(*options); },
-    .set = [](Handle s, chicane_array array, const double* from) { own<P>(s)->set(array, from); },
-    .setf = [](Handle s, chicane_array array, const float* from) { own<P>(s)->set(array, from); },
-    .get = [](const chicane_solver* s, chicane_array array, double* to) { own<P>(s)->get(array, to); },
-    .getf = [](const chicane_solver* s, chicane_array array, float* to) { own<P>(s)->get(array, to); },
-    .solve = [](Handle s, const double* x0, chicane_report* r) { own<P>(s)->solve(x0, *r); },
-    .solvef = [](Handle s, const float* x0, chicane_report* r) { own<P>(s)->solve(x0, *r); },
-    .shift = [](Handle s) { own<P>(s)->shift(); },
-    .prepare = [](Handle s) { return own<P>(s)->prepare(); },
-    .feedback = [](Handle s, const double* x0) { return own<P>(s)->feedback(x0); },
-    .feedbackf = [](Handle s, const float* x0) { return own<P>(s)->feedback(x0); }};
+    .destroy = [](Handle s) { solver_of<P>(s)->~CSolver<P>(); },
+    .set_options = [](Handle s, const chicane_options* options) { solver_of<P>(s)->set_options(*options); },
+    .set = [](Handle s, chicane_array array, const double* from) { solver_of<P>(s)->set(array, from); },
+    .setf = [](Handle s, chicane_array array, const float* from) { solver_of<P>(s)->set(array, from); },
+    .get = [](const chicane_solver* s, chicane_array array, double* to) { solver_of<P>(s)->get(array, to); },
+    .getf = [](const chicane_solver* s, chicane_array array, float* to) { solver_of<P>(s)->get(array, to); },
+    .solve = [](Handle s, const double* x0, chicane_report* r) { solver_of<P>(s)->solve(x0, *r); },
+    .solvef = [](Handle s, const float* x0, chicane_report* r) { solver_of<P>(s)->solve(x0, *r); },
+    .shift = [](Handle s) { solver_of<P>(s)->shift(); },
+    .prepare = [](Handle s) { return solver_of<P>(s)->prepare(); },
+    .feedback = [](Handle s, const double* x0) { return solver_of<P>(s)->feedback(x0); },
+    .feedbackf = [](Handle s, const float* x0) { return solver_of<P>(s)->feedback(x0); }};
 }  // namespace detail
 
-/// The problem of a type, for C.
+/// Table of the functions by which programs in C use problem P.
 template <OcpProblem P>
 [[nodiscard]] const chicane_problem* c_problem() noexcept {
   return &detail::kProblemForC<P>;

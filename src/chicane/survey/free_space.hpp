@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Finds a road in an occupancy map: the middle line of free room that leads round an obstacle.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +12,11 @@
 
 namespace chicane::survey {
 
-/// Finds a road in an occupancy map: the middle line of free room that leads round an obstacle.
-
 /// Content of a cell of a map.
 enum class Cell : std::uint8_t { kFree, kWall, kUnknown };
 
-/// Occupancy map of a place, seen from above, in the layout of ROS: square cells in rows.
+/// Occupancy map of a place, seen from above, as nav_msgs/OccupancyGrid: square cells in rows.
+/// W is the world frame.
 struct FreeSpace {
   int width = 0, height = 0;     ///< [cells], > 0
   double resolution = 0.05;      ///< side of a cell [m], > 0
@@ -45,9 +45,9 @@ struct FreeLoop {
   int spots = 0;                              ///< number of obstacles treated as noise
 };
 
-/// Middle line of the free room between walls, and its width to each side. Of all ways round the infield the
-/// search takes a short one far from walls. Unknown cells are no road. A map of more than 16 million cells is
-/// coarsened first. Memory: below 20 bytes for each cell.
+/// Middle line of the free room between walls, and its width to each side. Among the loops round the obstacle
+/// the search takes a short one, whose length counts more near walls. Unknown cells are no road. A map of
+/// more than 16 million cells is coarsened first. Memory: below 20 bytes for each cell.
 ///
 /// Fails with kParse if there is no loop. The message says where the free room is too narrow or open.
 [[nodiscard]] Result<FreeLoop> find_loop(const FreeSpace& space, const LoopOptions& options);

@@ -27,9 +27,9 @@ inline constexpr std::string_view kDisturbanceKey = "disturbance";
 /// over a socket.
 struct ExternalEntry {
   std::string name{};
-  /// Command of a shell that starts the program. filled() replaces in it {port} by the port to listen on,
-  /// {latency_ms} by the sleep before each answer, {track} by the road, {chicane} by this program. The
-  /// command of a ROS 2 controller has {domain}, the DDS domain of the car, in place of {port}.
+  /// Command of a shell that starts the program, with places that filled() replaces: {port} by the port to
+  /// listen on, {latency_ms} by the sleep before each answer, {track} by the road, {chicane} by this program.
+  /// The command of a ROS 2 controller has {domain}, the DDS domain of the car, in place of {port}.
   std::string command{};
   std::vector<std::string> tracks{}, cars{}, disturbances{};  ///< where and how it drives
 };
@@ -51,11 +51,12 @@ struct League {
   std::vector<std::pair<std::string, Settings>> disturbances{};
 
   /// Trials of the external entries. Disturbances by faults are impossible, because faults act in our control
-  /// loop. Disturbances by latency need {latency_ms} in the command, because the program itself sleeps.
+  /// loop. Disturbances by latency need {latency_ms} in the command, because the program itself sleeps,
+  /// except of ROS 2 controllers.
   [[nodiscard]] std::vector<ExternalTrial> external_trials() const;
 };
 
-/// Port on which programs without {port} in their command listen, as for the original simulator.
+/// Port on which programs without {port} in their command listen: that of the Udacity simulator.
 inline constexpr int kOriginalPort = 4567;
 /// Whether the program of a trial is a ROS 2 controller: its command contains {domain}.
 [[nodiscard]] bool is_ros(const ExternalTrial& trial);
@@ -71,10 +72,11 @@ void add_external(League& league, const std::string& command);
 ///
 ///     name: mine against theirs
 ///     settings: {laps: 2, guard.mode: "off"}            # of all runs
-///     search: {speed_mps: {from: 8, to: 80}}            # as in a plan; this when left out
+///     search: {speed_mps: {from: 8, to: 80}}            # as in a plan; optional, default as shown
 ///     entries:
 ///       mine: {preset: mine.yaml}                       # settings, as in a preset
-///       theirs: {server: "./mpc {port}", tracks: [lakeside]}   # a program; tracks, cars, disturbances: some
+///       theirs: {server: "./mpc {port}", tracks: [lakeside]}
+///           # external program; tracks, cars, disturbances: optional, default all
 ///     tracks: [lakeside, oval]
 ///     cars: [udacity, road-car]
 ///     disturbances: {none: {}, wet: {plant_options.friction_scale: 0.8}}
@@ -98,8 +100,8 @@ struct LeagueCell {
   bool is_external = false;                              ///< its controller is another program
   bool is_clean = false;                                 ///< all laps driven, no tyre off the road
   std::map<std::string, double, std::less<>> numbers{};  ///< values by column; only measured ones
-  std::string why{};                                     ///< reason why it is not clean, in a few words
-  std::string command{};                                 ///< command line that repeats the run
+  std::string why{};      ///< reason why it is not clean, in a few words; empty: it is
+  std::string command{};  ///< command line that repeats the run
 
   /// Number of a column; NaN if it was not measured.
   [[nodiscard]] double number(std::string_view column) const;
@@ -120,11 +122,13 @@ class BesideFile {
   /// Opens as LineFile::open() does. kInvalidArgument for the file of another league or plan.
   [[nodiscard]] static Result<BesideFile> open(const std::string& path, const League& league);
 
-  /// Whether the file has the limit of a car on a track, or the result of a trial.
+  /// Whether the file had the limit of a car on a track when it was opened.
   [[nodiscard]] bool has_bound(const std::string& track, const std::string& car) const;
+  /// Whether the file had the result of a trial when it was opened.
   [[nodiscard]] bool has_trial(const ExternalTrial& trial) const;
 
-  /// Adds the limit of a car on a track. kIo. Any thread, as the following functions.
+  /// Adds the limit of a car on a track. This and the two functions below fail with kIo, and may be called
+  /// from any thread.
   [[nodiscard]] Result<void> add_bound(const std::string& track, const std::string& car,
                                        const Result<double>& bound);
   /// Adds the times of our controller in a run of the sweep.

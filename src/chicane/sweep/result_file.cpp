@@ -40,8 +40,8 @@ std::optional<std::uint64_t> run_of(const std::string& line) {
   return run && *run < Plan::kMostRuns ? run : std::nullopt;
 }
 
-/// Function that calls `on_line` with the number of the run of each line. kParse for a line without one.
-OnLine of_runs(const OnLine& on_line) {
+/// Wraps `on_line`: reads the number of the run from each line first. kParse for a line without one.
+OnLine with_run_numbers(const OnLine& on_line) {
   return [on_line](LinePlace place, const std::string& line) -> Result<void> {
     const std::optional<std::uint64_t> run = run_of(line);
     if (!run)
@@ -55,22 +55,22 @@ OnLine of_runs(const OnLine& on_line) {
 Result<void> read_results(const std::string& file,
                           const std::function<Result<void>(const std::string&)>& on_first,
                           const OnLine& on_run) {
-  const auto contents = read_text_lines(file, on_first, of_runs(on_run));
+  const auto contents = read_text_lines(file, on_first, with_run_numbers(on_run));
   if (contents && contents->header.empty()) return on_first("");
   return contents ? Result<void>{} : fail(contents.error());
 }
 
 /// Reason why the results of two different first lines do not belong together: "the plan 12, expected 17".
 std::string difference_text(const Header& got, const Header& expected) {
-  const auto words = [](std::string_view what, const std::string& a, const std::string& b) {
-    return fmt::format("{} {}, expected {}", what, a, b);
-  };
-  if (got.plan != expected.plan) return words("the plan", got.plan, expected.plan);
-  if (got.program != expected.program) return words("the program", got.program, expected.program);
-  if (got.arithmetic != expected.arithmetic)
-    return words("the arithmetic", got.arithmetic, expected.arithmetic);
-  if (got.files != expected.files)
-    return words("presets, cars or tracks of other contents,", got.files, expected.files);
+  static constexpr std::pair<std::string_view, std::string Header::*> kParts[] = {
+      {"the plan", &Header::plan},
+      {"the program", &Header::program},
+      {"the arithmetic", &Header::arithmetic},
+      {"the guard", &Header::guard},
+      {"presets, cars or tracks of other contents,", &Header::files}};
+  for (const auto& [what, part] : kParts)
+    if (got.*part != expected.*part)
+      return fmt::format("{} {}, expected {}", what, got.*part, expected.*part);
   return "another first line, expected the same";
 }
 
@@ -121,6 +121,7 @@ Result<Header> parse_header(std::string_view line, const std::string& file) {
                   .plan = json.at("plan"),
                   .program = json.at("program"),
                   .arithmetic = json.at("arithmetic"),
+                  .guard = protocol::json_text(json.value("guard", Json())),
                   .files = json.value("files", ""),
                   .runs = json.at("runs")};
     header.fixed = settings_in(json.at("settings"));
@@ -147,18 +148,18 @@ Result<FileContents> read_text_lines(const std::string& file,
   FileContents contents;
   std::string line;
   for (std::uint64_t number = 1; std::getline(stream, line) && !stream.eof(); ++number) {
-    const LinePlace place{0, contents.whole, line.size()};
-    contents.whole += line.size() + 1;
-    const auto say = [&](const Error& error) {
+    const LinePlace place{0, contents.complete_bytes, line.size()};
+    contents.complete_bytes += line.size() + 1;
+    const auto located = [&](const Error& error) {
       return fail(error.code, fmt::format("{}:{}: {}", file, number, error.message));
     };
     if (line.size() > kLongestLine)
-      return say({ErrorCode::kParse, fmt::format("got {}, expected a shorter line", printable(line))});
+      return located({ErrorCode::kParse, fmt::format("got {}, expected a shorter line", printable(line))});
     if (number == 1) {
       contents.header = line;
       if (const Result<void> taken = on_first(line); !taken) return fail(taken.error());
     } else if (const Result<void> taken = on_line(place, line); !taken) {
-      return say(taken.error());
+      return located(taken.error());
     }
   }
   if (stream.bad()) return fail(ErrorCode::kIo, fmt::format("{}: {}", file, std::strerror(errno)));
@@ -205,7 +206,7 @@ Result<LineFile> LineFile::open(const std::string& path, const std::string& firs
   };
   const auto contents = read_text_lines(path, check, on_line);
   if (!contents) return fail(contents.error());
-  file.size_ = contents->whole;
+  file.size_ = contents->complete_bytes;
   if (::ftruncate(file.descriptor_, static_cast<off_t>(file.size_)) != 0) return io_failure(path);
   if (file.size_ > 0) return file;
   if (const Result<void> written = file.append(first); !written) return fail(written.error());
@@ -222,7 +223,9 @@ Result<void> LineFile::append(std::string_view line) {
     return {};
   }
   const int reason = errno;
-  static_cast<void>(!::ftruncate(descriptor_, static_cast<off_t>(size_)));  // no half line is left behind
+  // Removes the part that was written. The failed write is reported, not a failure here; `!` uses the result,
+  // as ftruncate() demands.
+  static_cast<void>(!::ftruncate(descriptor_, static_cast<off_t>(size_)));
   errno = reason;
   return io_failure(path_);
 }
@@ -237,7 +240,7 @@ Result<ResultFile> ResultFile::open(const std::string& path, const Plan& plan, c
                                    difference_text(*got, parse_header(header, path).value()))}
                : got.error();
   };
-  const auto note = [&](const LinePlace& line, const std::string&) -> Result<void> {
+  const auto mark_done = [&](const LinePlace& line, const std::string&) -> Result<void> {
     if (line.run >= plan.size() || !shard.has(line.run))
       return fail(ErrorCode::kInvalidArgument,
                   fmt::format("got run {}, expected one of this shard", line.run));
@@ -245,7 +248,7 @@ Result<ResultFile> ResultFile::open(const std::string& path, const Plan& plan, c
     file.done_[line.run / shard.count] = true;
     return {};
   };
-  Result<LineFile> lines = LineFile::open(path, header, refuse, of_runs(note));
+  Result<LineFile> lines = LineFile::open(path, header, refuse, with_run_numbers(mark_done));
   if (!lines) return fail(lines.error());
   file.file_ = std::move(*lines);
   return file;
@@ -253,11 +256,11 @@ Result<ResultFile> ResultFile::open(const std::string& path, const Plan& plan, c
 
 namespace {
 
-// Missing runs kept for the message; more are counted: bounds memory.
+// Most missing runs that are kept by number; the rest is only counted. Bounds memory; chosen.
 constexpr std::size_t kMostNamed = 10000;
 constexpr std::size_t kMostRanges = 10;  // ranges of missing runs in the message: some lines; chosen
 
-/// Place of a run's line in the merged files, in 16 bytes: there may be a thousand million runs.
+/// Place of a run's line in the merged files, in 16 bytes: there may be 1e9 runs (Plan::kMostRuns).
 struct Found {
   std::uint32_t file = 0;    ///< index of the file
   std::uint32_t size = 0;    ///< size of the line [byte]; 0: not found
@@ -283,7 +286,11 @@ class Merger {
   Result<MergeSummary> write(const std::string& output) {
     FileWriter out(output);
     out.write(header_ + '\n');
-    for (const Found& each : found_) out.write(line(each) + '\n');
+    for (const Found& each : found_) {
+      const Result<std::string> text = line(each);
+      if (!text) return fail(text.error());
+      out.write(*text + '\n');
+    }
     if (const Result<void> written = out.finish(); !written) return fail(written.error());
     return MergeSummary{.runs = found_.size(), .repeated = repeated_};
   }
@@ -293,7 +300,7 @@ class Merger {
   Result<void> read(std::uint32_t index) {
     const std::string& file = files_[index];
     if (!streams_[index]) return fail(refusal(file + ": file", "none", "a file"));
-    const auto begin = [&](const std::string& first) -> Result<void> {
+    const auto check_header = [&](const std::string& first) -> Result<void> {
       const Result<Header> header = parse_header(first, file);
       if (!header) return fail(header.error());
       if (index == 0) {
@@ -307,55 +314,51 @@ class Merger {
       }
       return {};
     };
-    const auto add = [&](const LinePlace& place, const std::string& text) {
-      return take(place, text, index);
-    };
-    return read_results(file, begin, add);
+    return read_results(file, check_header, [&](const LinePlace& place, const std::string& text) {
+      return record(place, text, index);
+    });
   }
 
   /// Keeps the place of a line; compares the text with an earlier line of the same run.
-  Result<void> take(const LinePlace& place, const std::string& text, std::uint32_t index) {
+  Result<void> record(const LinePlace& place, const std::string& text, std::uint32_t index) {
     if (place.run >= found_.size())
       return fail(ErrorCode::kParse, fmt::format("got run {}, expected one of {}", place.run, found_.size()));
     Found& known = found_[place.run];
     if (known.size == 0) {
+      // The size fits: read_text_lines() refuses lines of more than kLongestLine.
       known = {index, static_cast<std::uint32_t>(place.size), place.offset};
       return {};
     }
     ++repeated_;
-    if (line(known) == text) return {};
+    const Result<std::string> earlier = line(known);
+    if (!earlier) return fail(earlier.error());
+    if (*earlier == text) return {};
     return fail(ErrorCode::kInvalidArgument,
                 fmt::format("got other results of run {} than {} has: they were driven with other files or "
                             "another build",
                             place.run, files_[known.file]));
   }
 
-  /// Text of a line that was found.
-  std::string line(const Found& place) {
+  /// Text of a line that was found. kIo if the file has no such bytes: it is a pipe, or has become shorter.
+  Result<std::string> line(const Found& place) {
     std::string text(place.size, '\0');
     std::ifstream& stream = streams_[place.file];
     stream.clear();
     stream.seekg(static_cast<std::streamoff>(place.offset));
-    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-    return text;
+    if (stream.read(text.data(), static_cast<std::streamsize>(text.size()))) return text;
+    return fail(ErrorCode::kIo, fmt::format("{}: cannot be read a second time", files_[place.file]));
   }
 
-  /// Fails with the numbers of the missing runs.
+  /// Fails with the numbers of the missing runs, if there are any.
   [[nodiscard]] Result<void> check_complete() const {
     std::vector<std::uint64_t> missing;
-    std::uint64_t more = 0;
-    for (std::uint64_t run = 0; run < found_.size(); ++run) {
-      if (found_[run].size != 0) continue;
-      if (missing.size() < kMostNamed) {
-        missing.push_back(run);
-      } else {
-        ++more;
-      }
-    }
+    std::uint64_t count = 0;
+    for (std::uint64_t run = 0; run < found_.size(); ++run)
+      if (found_[run].size == 0 && count++ < kMostNamed) missing.push_back(run);
     if (missing.empty()) return {};
     return fail(ErrorCode::kInvalidArgument,
-                fmt::format("{} of {} runs are missing: {}; the same sweep command drives them",
-                            missing.size() + more, found_.size(), ranges_text(missing, more)));
+                fmt::format("{} of {} runs are missing: {}; the same sweep command drives them", count,
+                            found_.size(), ranges_text(missing, count - missing.size())));
   }
 
   const std::vector<std::string>& files_;

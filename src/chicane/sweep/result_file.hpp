@@ -33,8 +33,9 @@ namespace chicane::sweep {
 
 /// Content of the first line.
 struct Header {
-  std::string name{}, plan{};                  ///< name of the plan, and Plan::hash()
-  std::string program{}, arithmetic{};         ///< program_name(), and the arithmetic of its instruction set
+  std::string name{}, plan{};  ///< name of the plan, and Plan::hash()
+  /// program_name(), the arithmetic of its instruction set, and its guard as JSON: `{"version":3}`.
+  std::string program{}, arithmetic{}, guard{};
   std::string files{};                         ///< Plan::digest_of_files()
   std::uint64_t runs = 0;                      ///< Plan::size()
   Settings fixed{};                            ///< settings of all runs
@@ -57,8 +58,8 @@ using OnLine = std::function<Result<void>(const LinePlace&, const std::string&)>
 
 /// What reading a file has found.
 struct FileContents {
-  std::string header;       ///< first line; empty: none is complete
-  std::uint64_t whole = 0;  ///< size of all complete lines [byte]
+  std::string header;                ///< first line; empty: none is complete
+  std::uint64_t complete_bytes = 0;  ///< size of all complete lines [byte]
 };
 /// Reads a file line by line; memory does not grow with the file. `on_first` gets the first line, `on_line`
 /// each further one. Skips a last line without line break, which a killed process has left. Errors of
@@ -97,7 +98,7 @@ class LineFile {
   std::string path_{};
   int descriptor_ = -1;     ///< of the open file; -1: none
   std::uint64_t size_ = 0;  ///< size of the file [byte]
-  std::mutex mutex_{};      ///< guards the file and size_
+  std::mutex mutex_{};      ///< guards the file and size_; stays when an object is moved
 };
 
 /// Result file of one shard of a sweep, open for appending.
@@ -135,7 +136,8 @@ struct MergeSummary {
 /// not at all, and may be one of the files.
 ///
 /// kInvalidArgument for files of different plans or programs, for missing runs, which the message names, and
-/// for a run with two different results; kParse for lines that are no results; kIo.
+/// for a run with two different results; kParse for lines that are no results; kIo, also for a pipe among the
+/// files, since lines are read twice.
 [[nodiscard]] Result<MergeSummary> merge(const std::vector<std::string>& files, const std::string& output);
 
 /// Rising numbers as ranges: "17-20, 33 and 5 more". `more`: numbers that are only counted.

@@ -34,6 +34,7 @@ void RunMemory::forget() {
 
 void RunMemory::add_frame(double time, std::string payload) {
   dense_.push_back({next_++, time, std::move(payload)});
+  // A frame that leaves the dense part is kept if it is kSpacing after the last one kept.
   while (dense_.size() > kMostDense || dense_.front().time < time - kDense) {
     if (sparse_.empty() || dense_.front().time >= sparse_.back().time + kSpacing - kRounding)
       sparse_.push_back(std::move(dense_.front()));
@@ -66,10 +67,10 @@ void RunMemory::add_change(double time, std::string payload) {
 }
 
 const KeptMessage* RunMemory::frame_before(std::uint64_t number) const {
-  const std::size_t newer = count_before(dense_, number);
-  if (newer > 0) return &dense_[newer - 1];
-  const std::size_t older = count_before(sparse_, number);
-  return older > 0 ? &sparse_[older - 1] : nullptr;
+  const std::size_t dense_count = count_before(dense_, number);
+  if (dense_count > 0) return &dense_[dense_count - 1];
+  const std::size_t sparse_count = count_before(sparse_, number);
+  return sparse_count > 0 ? &sparse_[sparse_count - 1] : nullptr;
 }
 
 std::size_t RunMemory::frames_before(std::uint64_t number) const {

@@ -23,8 +23,8 @@ template <class Model>
 class WithModel : public PlanModelOf<LimitModel, Model> {
  public:
   [[nodiscard]] CarSize size() const override { return this->model_.size(); }
-  [[nodiscard]] int driven() const override { return Model::kDriven; }
-  [[nodiscard]] int input() const override { return Model::kInput; }
+  [[nodiscard]] int feedback_states() const override { return Model::kDriven; }
+  [[nodiscard]] int first_input() const override { return Model::kInput; }
 };
 
 /// Limit model of the plant `udacity`.
@@ -89,11 +89,11 @@ class UdacityLimit final : public WithModel<UdacityModel> {
     static constexpr Tuning kTunings[] = {{{40.0, 0.1}}, {{10.0, 0.1}}, {{160.0, 0.1}}, {{40.0, 0.02}}};
     return kTunings;
   }
-  [[nodiscard]] bool is_spent(const double*) const override { return false; }
-  void start() override {}
-  void see(const model::Command&, const sim::PlantOutput&, double) override {}
+  [[nodiscard]] bool is_drive_saturated(const double*) const override { return false; }
+  void start_estimate() override {}
+  void update_estimate(const model::Command&, const sim::PlantOutput&, double) override {}
   /// Uses the velocity in the middle of the next step: the helper turns it first, drag comes last.
-  void motion(const model::State& state, double* x) const override {
+  void read_states(const model::State& state, double* x) const override {
     const double turn = kSeen * model_.car.steer_helper * sim::UdacityCar::kStepLength * state.r;
     const double mean = 1.0 + 0.5 * model_.car.linear_drag * sim::UdacityCar::kStepLength;
     x[kVx] = mean * state.vx - turn * state.vy;
@@ -112,7 +112,7 @@ class UdacityLimit final : public WithModel<UdacityModel> {
     const double planned = z[kSteer] - course(z[kVx], z[kVy], z[kYawRate]);
     const double most = std::max(kMostSlip, std::fabs(planned));
     std::array<double, 5> x{};
-    motion(state, x.data());
+    read_states(state, x.data());
     const double now = course(x[kVx], x[kVy], x[kYawRate]);
     const double steer = std::clamp(inputs[0], now - most, now + most);
     return {std::clamp(steer, -model_.car.steer_limit, model_.car.steer_limit),
@@ -207,22 +207,22 @@ class DoubleTrackLimit final : public WithModel<DoubleTrackModel> {
                                           {{2.0, 0.1}, 100.0},  {{0.5, 0.1}, 1000.0}};
     return kTunings;
   }
-  [[nodiscard]] bool is_spent(const double* z) const override {
+  [[nodiscard]] bool is_drive_saturated(const double* z) const override {
     const sim::DoubleTrackParams& car = model_.car;
     const double asked = z[kPedal] + car.drive_lag * z[DoubleTrackModel::kPedalRate];
     return asked > kNearLimit || z[kPedal] * car.drive_force * z[kVx] > kNearLimit * car.drive_power;
   }
 
-  void start() override {
+  void start_estimate() override {
     pedal_ = 0.0;
     shift_x_ = shift_y_ = 0.0;
   }
-  void see(const model::Command& asked, const sim::PlantOutput& output, double elapsed) override {
+  void update_estimate(const model::Command& asked, const sim::PlantOutput& output, double elapsed) override {
     pedal_ = model_.car.pedal().next(pedal_, asked.throttle, elapsed);
     shift_x_ += elapsed / model_.car.load_lag * (output.ax - shift_x_);
     shift_y_ += elapsed / model_.car.load_lag * (output.ay - shift_y_);
   }
-  void motion(const model::State& state, double* x) const override {
+  void read_states(const model::State& state, double* x) const override {
     x[kVx] = state.vx;
     x[kVy] = state.vy;
     x[kYawRate] = state.r;

@@ -246,8 +246,8 @@ Matrix reduced_slopes(const LimitModel& model, std::size_t node, const double* z
   const auto count = static_cast<std::size_t>(f.functions());
   const auto states = static_cast<std::size_t>(f.states);
   const auto equations = static_cast<std::size_t>(f.equations);
-  const auto n = static_cast<std::size_t>(model.driven());
-  const auto input = static_cast<std::size_t>(model.input());
+  const auto n = static_cast<std::size_t>(model.feedback_states());
+  const auto input = static_cast<std::size_t>(model.first_input());
   std::vector<double> out(count);
   std::vector<double> slope(count * variables);
   std::vector<double> hessian(variables * (variables + 1) / 2);
@@ -283,7 +283,7 @@ Matrix reduced_slopes(const LimitModel& model, std::size_t node, const double* z
 
 RingFeedback::RingFeedback(const LimitModel& model, const RoadNodes& road, const std::vector<double>& z,
                            const Tuning& tuning)
-    : driven_{model.driven()} {
+    : driven_{model.feedback_states()} {
   const auto n = static_cast<std::size_t>(driven_);
   const auto variables = static_cast<std::size_t>(model.functions().variables);
   const std::size_t nodes = road.s.size();
@@ -301,7 +301,7 @@ RingFeedback::RingFeedback(const LimitModel& model, const RoadNodes& road, const
     const std::size_t next = (k + 1) % nodes;
     const double h = road.step[k];
     std::array<double, 2> weight = tuning.inputs;
-    if (model.is_spent(z.data() + k * variables)) weight[1] *= tuning.spent;
+    if (model.is_drive_saturated(z.data() + k * variables)) weight[1] *= tuning.saturated_pedal_factor;
     // x⁺ = A x + B u by the trapezoidal rule with the input held.
     Matrix left(n * n);
     Matrix right(n * m);
@@ -406,8 +406,8 @@ DrivenLaps drive_plan(const road::Track& track, LimitModel& model, const NodePla
   model.set_road(plan.road);
   const RingFeedback feedback(model, plan.road, plan.z, tuning);
   const auto variables = static_cast<std::size_t>(model.functions().variables);
-  const auto driven = static_cast<std::size_t>(model.driven());
-  const auto input = static_cast<std::size_t>(model.input());
+  const auto driven = static_cast<std::size_t>(model.feedback_states());
+  const auto input = static_cast<std::size_t>(model.first_input());
   const PlanTable table(plan, feedback, variables, driven, track.length());
   const road::Path& line = track.centre();
 
@@ -418,7 +418,7 @@ DrivenLaps drive_plan(const road::Track& track, LimitModel& model, const NodePla
   const Vec2 place =
       foot.position + z0[kOffset] * Vec2{-chicane::sin(foot.heading), chicane::cos(foot.heading)};
   plant.reset({place.x(), place.y(), foot.heading + z0[kHeading]}, z0[kVx]);
-  model.start();
+  model.start_estimate();
   sim::Judge judge(track);
   judge.reset(0.0, sighting_of(plant));
 
@@ -435,7 +435,7 @@ DrivenLaps drive_plan(const road::Track& track, LimitModel& model, const NodePla
     // Inputs of the plan in the middle of the next step, for which the command acts, plus feedback.
     const OnRoad<double> on(line.at(seen.s).curvature, z[kOffset], z[kHeading], z[kVx], z[kVy]);
     table.at(seen.s + 0.5 * dt / on.slowness, ahead.data(), nullptr);
-    model.motion(plant.state(), x.data());
+    model.read_states(plant.state(), x.data());
     x[kOffset] = seen.lateral_error;
     x[kHeading] = seen.heading_error;
     double inputs[2] = {ahead[input], ahead[input + 1]};
@@ -446,7 +446,7 @@ DrivenLaps drive_plan(const road::Track& track, LimitModel& model, const NodePla
     // One step of the plant, and its judgement.
     const model::Command asked = model.command(plant.state(), ahead.data(), inputs);
     plant.advance(asked);
-    model.see(asked, plant.output(), dt);
+    model.update_estimate(asked, plant.output(), dt);
     time += dt;
     const int lap = judge.state().lap;
     judge.see(time, sighting_of(plant));

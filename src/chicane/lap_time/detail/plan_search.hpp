@@ -105,7 +105,7 @@ class RingFeedback {
   }
 
  private:
-  int driven_;                 ///< LimitModel::driven()
+  int driven_;                 ///< LimitModel::feedback_states()
   std::vector<double> gains_;  ///< gains() of all nodes
 };
 

@@ -83,7 +83,7 @@ class Descent {
         if (deadline.spent()) return false;
         const double allowed = now.merit + kArmijo * length * expected + kRounding * std::fabs(now.merit);
         if (!(try_step(problem, t, lq, slacks, length) <= allowed)) continue;
-        moved_ = longest_move(t, candidate_);
+        moved_ = max_input_change(t, candidate_);
         t = candidate_;
         slacks.lower_for_gain(-expected, t.horizon);
         ++taken_;

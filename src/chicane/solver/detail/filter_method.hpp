@@ -335,8 +335,8 @@ class FilterMethod {
       if (length >= 0.05 || there.miss <= 0.9 * here.miss) failures_ = 0;
       short_steps_ = length < kShort ? short_steps_ + 1 : 0;
       length_ = length;
-      moved_ = longest_move(t, candidate_);
-      floor_.note_step(stays<Arch>(t, candidate_) && !(there.miss < 0.9 * here.miss));
+      moved_ = max_input_change(t, candidate_);
+      floor_.note_step(equal_within_rounding<Arch>(t, candidate_) && !(there.miss < 0.9 * here.miss));
       t = candidate_;
       here_ = there;
       is_here_known_ = true;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// The solver's copy of a trajectory, variable by variable, so that eight stages fill a vector, and operations
+// on it.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +18,8 @@ namespace chicane::solver {
 template <class Arch>
 using Stages = Pack<Arch, 8>;
 
-/// One number for each stage 0 … Capacity. The stage after any group of eight can be read as a group, too.
+/// Length of an array with a number for each stage 0 … Capacity, and with room to load eight numbers from one
+/// stage after any group of eight.
 template <std::size_t Capacity>
 inline constexpr std::size_t kStageStride = padded_stages(Capacity + 1) + 8;
 
@@ -36,7 +39,7 @@ struct Iterate {
 
   Iterate() = default;
   Iterate(const Iterate&) = delete;
-  /// Copies the horizon, not the capacity.
+  /// Copies the stages of the horizon alone; the rest of the arrays stays.
   Iterate& operator=(const Iterate& o) noexcept {
     if (&o == this) return *this;
     horizon = o.horizon;
@@ -69,9 +72,10 @@ struct Iterate {
   }
 };
 
-/// Copies the step of the quadratic program to `step`, with `Cut` with inputs cut to their bounds; returns
-/// the longest move of an input.
-template <class Arch, bool Cut, class Lq, class Step>
+/// Copies the step of the quadratic program to `step`. Its states are stored stage by stage, and are
+/// transposed in blocks of 8 × 8. `ClampInputs`: limits inputs to their bounds. Returns the largest change of
+/// an input.
+template <class Arch, bool ClampInputs, class Lq, class Step>
 double collect_step(const Lq& lq, std::size_t horizon, Step& step) noexcept {
   using V = Stages<Arch>;
   step.horizon = horizon;
@@ -90,7 +94,7 @@ double collect_step(const Lq& lq, std::size_t horizon, Step& step) noexcept {
   for (std::size_t m = 0; m < Lq::kNu; ++m) {
     for (std::size_t k = 0; k < horizon; ++k) {
       const double du =
-          Cut ? std::min(std::max(lq.du[k][m], lq.lq.low[m][k]), lq.lq.high[m][k]) : lq.du[k][m];
+          ClampInputs ? std::min(std::max(lq.du[k][m], lq.lq.low[m][k]), lq.lq.high[m][k]) : lq.du[k][m];
       step.u[m][k] = du;
       longest = std::max(longest, std::fabs(du));
     }
@@ -112,10 +116,10 @@ void add_step(const Point& from, double length, const Point& step, Point& to) no
   }
 }
 
-/// Whether nothing moves by more than rounding between two points.
+/// Whether two points are equal but for rounding.
 template <class Arch, class Point>
-bool stays(const Point& from, const Point& to) noexcept {
-  constexpr double kTiny = 1e-15;  // some roundings, relative
+bool equal_within_rounding(const Point& from, const Point& to) noexcept {
+  constexpr double kTiny = 1e-15;  // about five roundings, relative; absolute near zero; chosen
   const auto keeps = [&](const auto& a, const auto& b, std::size_t count) {
     for (std::size_t i = 0; i < std::size(a); ++i) {
       for (std::size_t k = 0; k < count; ++k) {
@@ -127,9 +131,9 @@ bool stays(const Point& from, const Point& to) noexcept {
   return keeps(from.u, to.u, from.horizon) && keeps(from.x, to.x, from.horizon + 1);
 }
 
-/// The longest move of an input between two points.
+/// Largest change of an input between two points.
 template <class Point>
-CHICANE_INLINE inline double longest_move(const Point& from, const Point& to) noexcept {
+CHICANE_INLINE inline double max_input_change(const Point& from, const Point& to) noexcept {
   double longest = 0.0;
   for (std::size_t m = 0; m < std::size(from.u); ++m) {
     for (std::size_t k = 0; k < from.horizon; ++k)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Numbers of a viewer's channels: the topics of protocol::ros_topics() in their order, then past frames.
+// Channels of a viewer, and messages for them. Channels are numbered: the topics of protocol::ros_topics() in
+// their order, then past frames.
 #pragma once
 
 #include <algorithm>
@@ -12,11 +13,10 @@
 #include "chicane/protocol/foxglove_codec.hpp"
 #include "chicane/protocol/ros_messages.hpp"
 
-/// Numbers of a viewer's channels, and messages for them.
 namespace chicane::wire::detail {
 
-inline constexpr std::string_view kPastTopic =
-    "/chicane/past";  ///< topic of the frames before the connection
+/// Topic of the frames before the connection.
+inline constexpr std::string_view kPastTopic = "/chicane/past";
 
 /// Channel of kPastTopic.
 [[nodiscard]] inline std::uint32_t past_channel() {
