@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, beforeEach, describe, it } from 'node:test';
 import { fileURLToPath } from 'node:url';
-import { DashboardPage } from './dashboard_page.mjs';
+import { DashboardPage, LAPTOP } from './dashboard_page.mjs';
 import { browserAndDrive } from './here.mjs';
 
 // A car that `chicane identify` found from a minute of a recording, and another program's road.
@@ -21,6 +21,7 @@ async function open() {
 describe('the page', () => {
   before(() => open());
   beforeEach(async () => {
+    await page.setViewportSize(LAPTOP.viewport);
     await dashboard.beginAt('try');
     await page.locator('#search').fill('');
     await page.evaluate(() => document.activeElement.blur());
@@ -63,6 +64,27 @@ describe('the page', () => {
     await page.getByText('Live', { exact: true }).waitFor();
     await dashboard.button('Clear all').click();
     await page.locator('button.fault[aria-pressed="true"]').waitFor({ state: 'detached' });
+  });
+
+  it('can be used at 200 % and at 320 pixels', async () => {
+    for (const viewport of [
+      { width: 683, height: 384 },
+      { width: 320, height: 640 },
+    ]) {
+      await page.setViewportSize(viewport);
+      await dashboard.show('watch');
+      const box = (selector) => page.locator(selector).first().boundingBox();
+      const map = await dashboard.until(
+        () => box('.map'),
+        ({ height }) => height >= 200,
+        `a picture that can be seen at ${viewport.width}`,
+      );
+      const strip = await box('.strip');
+      assert.ok(strip.y >= map.y + map.height - 1, 'the strip is below the picture');
+      const { across } = await dashboard.overflow();
+      assert.ok(across <= 0, `nothing is cut off at ${viewport.width}`);
+      assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    }
   });
 
   it('has its mode in the address, for back, forward, reload and links', async () => {

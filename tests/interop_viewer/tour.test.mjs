@@ -60,7 +60,7 @@ describe('the tour', () => {
     await isDone(dashboard, 2, 'the pace of before');
 
     await next(dashboard, '4 of 7: Blind it');
-    for (let i = 0; i < 2; ++i) await page.locator('body').press(']'); // four times as fast
+    for (const key of [']', ']', ']', '[']) await page.locator('body').press(key); // four times as fast
     await page.locator('[data-key="fault.link_lost"]').click();
     await isDone(dashboard, 2, 'a controller that sees again');
 

@@ -41,7 +41,7 @@ TEST(DataFolders, OfTheEnvironmentComeBeforeTheProgramsAndTheLibrarysAfter) {
 TEST(DataFolders, AreNamedOnce) {
   const DataOrigins origins{.program = "/none/bin/program", .shared_object = "/none/bin/program"};
   EXPECT_EQ(folders_of(origins).size(), count_of_fixed_places() + 3);
-  for (const std::string here : {".", std::filesystem::current_path().c_str()})
+  for (const std::string& here : {std::string("."), std::filesystem::current_path().string()})
     EXPECT_EQ(folders_of({.environment = here}), folders_of({})) << "the working folder is the first one";
 }
 

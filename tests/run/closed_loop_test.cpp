@@ -62,6 +62,15 @@ TEST(DefaultPreset, DrivesWhereCommandsAreLaterThanTheyWereHeld) {
   }
 }
 
+/// Commands do not look late to a car whose telemetry has no throttle.
+TEST(LatencyJitter, IsNotSeenInTelemetryWithoutThrottle) {
+  const auto loop = test::loop_of(scenario_of("udacity", "lakeside", 1));
+  loop->intercept({.measured = [](model::Measurement& now) { now.throttle = 0.0; }});
+  for (int i = 0; i < 2000; ++i) loop->advance();
+  EXPECT_GT(loop->world().progress, 100.0);
+  EXPECT_LT(loop->frame().longest_interval, 0.05);
+}
+
 TEST(LatencyJitter, IsNotTold) {
   scenario::Scenario scenario = scenario_of("udacity", "lakeside", 1);
   scenario.latency_jitter = 0.2;

@@ -110,7 +110,7 @@ TEST(SensorWatch, CountsOnFromWhereTheDriftBegan) {
     if (time >= 5.0) now.x -= 0.5 * (time - 5.0);
     expected.x += off;
     const bool is_doubted = watch.see(now, expected).place;
-    off = (is_doubted ? watch.x() : now.x) - car_at(time, 0.0).x;
+    off = (is_doubted ? watch.place().x() : now.x) - car_at(time, 0.0).x;
   }
   EXPECT_TRUE(watch.doubts().place);
   EXPECT_LT(std::fabs(off), 0.8);  // 3.5 m by the sensor
@@ -177,7 +177,7 @@ TEST(SensorWatch, CountsOnFromWhereThePlaceJumped) {
     const bool is_wrong = time >= 5.0 && time < 8.0;
     if (is_wrong) now.y += 4.0;
     watch.see(now, expected);
-    EXPECT_NEAR(watch.x(), expected.x, 0.01) << time;
+    EXPECT_NEAR(watch.place().x(), expected.x, 0.01) << time;
     const double ends = 8.0 + SensorWatch::kAgreeing;
     if (std::fabs(time - ends) > 0.1) {
       EXPECT_EQ(watch.doubts().place, time >= 5.0 && time < ends) << time;

@@ -175,11 +175,15 @@ void KnownRoad::find_narrowest() noexcept {
   const auto reach = std::min(static_cast<std::ptrdiff_t>(std::ceil(kReach / line_.spacing())), last - 1);
   for (std::ptrdiff_t i = 0; i <= last; ++i) {
     Edges least{kFar, kFar};
-    for (std::ptrdiff_t k = i - reach; k <= i + 1 + reach; ++k) {
-      const std::ptrdiff_t lap = !line_.is_closed() ? 0 : k < 0 ? -last : k > last ? last : 0;
-      const Edges& there =
-          rooms_[static_cast<std::size_t>(std::clamp(k - lap, std::ptrdiff_t{0}, last))].edges;
+    const auto take_in = [&](std::ptrdiff_t at) {
+      const Edges& there = rooms_[static_cast<std::size_t>(at)].edges;
       least = {std::min(least.left, there.left), std::min(least.right, there.right)};
+    };
+    for (std::ptrdiff_t k = i - reach; k <= i + 1 + reach; ++k) {
+      const std::ptrdiff_t at =
+          line_.is_closed() ? (k + last) % last : std::clamp(k, std::ptrdiff_t{0}, last);
+      take_in(at);
+      if (line_.is_closed() && at == 0) take_in(last);  // the same place, by its own computation
     }
     rooms_[static_cast<std::size_t>(i)].narrowest = least;
   }

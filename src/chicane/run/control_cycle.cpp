@@ -15,8 +15,6 @@ namespace {
 
 constexpr double kRoadSpacing = 2.0;  // [m] spacing of the points of the guard's road, in full size; chosen
 constexpr double kLateMemory = 30.0;  // [s] time constant in which a long interval fades; chosen
-// Derived: PredictiveFilter holds no command longer.
-constexpr double kLatest = 0.75;  // [s] in full size, most of the interval that late commands show
 
 }  // namespace
 
@@ -101,10 +99,11 @@ void ControlCycle::step(const CycleInput& input, telemetry::Frame& frame) noexce
   frame.gate_interval = frame.begins ? 0.0 : input.interval;
   longest_ = std::max(frame.gate_interval, longest_ * (1.0 - frame.gate_interval / kLateMemory));
   const double time = similarity_.time();
-  shows_throttle_ |= frame.measurement.throttle > 0.0;
+  shows_throttle_ |= !frame.begins && frame.measurement.throttle > 0.0;  // the first may be of a last run
   if (shows_throttle_ &&
       guard_.is_stopped_by_receiver(similarity_.full_size(frame.measurement), time * longest_))
-    longest_ = std::max(longest_, std::min(longest_ + frame.gate_interval, kLatest / time));
+    longest_ = std::max(
+        longest_, std::min(longest_ + frame.gate_interval, safety::PredictiveFilter::kLongestHold / time));
   frame.longest_interval = longest_;
   frame.is_manual = input.manual.has_value();
   if (input.manual) frame.manual = *input.manual;

@@ -87,7 +87,7 @@ class ControlCycle {
   telemetry::PredictionCheck prediction_check_;
   std::uint64_t next_ = 0;       ///< number of the next cycle
   bool begins_ = true;           ///< the next cycle is the first of a run
-  bool shows_throttle_ = false;  ///< telemetry of this run has had a throttle
+  bool shows_throttle_ = false;  ///< telemetry of this run has had a throttle above 0
   double longest_ = 0.0;         ///< longest recent interval, faded [s]
 };
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Guard: one control cycle, from the measurement to the command that is sent. The way back of a car that is
+// off its road, or stuck, is in guard_way_back.cpp.
 #include "chicane/safety/guard.hpp"
 
 #include <algorithm>
@@ -13,26 +15,21 @@ using controller::Answer;
 using controller::GuardReason;
 using controller::Rung;
 
-// Chosen: 6.4 s are drawn.
-constexpr int kShown = 64;          // points of a backup that is drawn
-constexpr double kShownStep = 0.1;  // [s]
-// Derived: PredictiveFilter adds as much to the longest interval until a stop begins.
-constexpr double kLateness = 0.06;  // [s]
-// Braking of a car that is too fast for a silence: kGentle of the family, gentle and stable without feedback.
-constexpr Braking kHeldBack{0.8, 1.6, 0.7};
+constexpr int kShown = 64;          // points of a stop that is drawn: 6.4 s; chosen
+constexpr double kShownStep = 0.1;  // [s] between two of them; chosen
 
 bool is_finite(const model::Command& command) noexcept {
   return std::isfinite(command.steer) && std::isfinite(command.throttle);
 }
 
-/// A controller of users may have written any size: nobody behind the guard has to look.
+/// Limits the sizes in the plan of a user's controller to the capacity: later readers need no check.
 void clamp_sizes(controller::Plan& plan) noexcept {
   plan.size = std::clamp(plan.size, 0, controller::Plan::kCapacity);
   plan.reference_size = std::clamp(plan.reference_size, 0, controller::Plan::kCapacity);
 }
 
-/// A controller that knows the car's tyres counts with how its actuators answer. One that bounds its inputs
-/// alone was described without, and its commands are sent as they are.
+/// Whether the controller has a model of the tyres, and so relies on commands that compensate the actuators'
+/// deviation. One with bounds of its inputs alone has none: its commands are sent unchanged.
 bool plans_with_car(const controller::Controller& controller) noexcept {
   return controller.constraints().size() > controller::kInputConstraintNames.size();
 }
@@ -71,8 +68,8 @@ void Guard::reset() noexcept {
   learned_.reset();
   sent_.clear();
   commanded_.clear();
-  count_with_answer();
-  count_with_actuators();
+  update_answer();
+  update_model_vehicle();
   supervisor_.reset();
   fallback_.reset();
   gate_.reset();
@@ -89,21 +86,21 @@ void Guard::set_vehicle(const model::VehicleParams& vehicle) noexcept {
   set_grip(grip_);
 }
 
-/// A stop counts with the grip that the car is driven with: the estimated over the configured one.
+/// Sets the grip that stops assume: that of the planned lap, as a share of the configured one.
 void Guard::set_grip(double share) noexcept {
   grip_ = share;
   actuators_.set_vehicle(model::with_grip(vehicle_, share));
-  count_with_actuators();
+  update_model_vehicle();
 }
 
 bool Guard::is_stopped_by_receiver(const model::Measurement& measured, double longest) const noexcept {
   const double newest = measured.time + std::max(learned_.answer().delay, 0.0);
   return measured.throttle <= 0.0 &&
-         commanded_.lowest_throttle(measured.time - longest - kLateness, newest) > kDrives;
+         commanded_.lowest_throttle(measured.time - longest - PredictiveFilter::kLateness, newest) > kDrives;
 }
 
-/// Estimate, stops and fallback count with the car as its actuators answer.
-void Guard::count_with_actuators() noexcept {
+/// Gives estimator, stops and fallback the parameters of the car with the braking that was observed.
+void Guard::update_model_vehicle() noexcept {
   const model::VehicleParams vehicle =
       options_.mode == GuardMode::kOn ? actuators_.vehicle() : actuators_.usual_vehicle();
   fallback_.set_vehicle(vehicle);
@@ -114,7 +111,7 @@ void Guard::count_with_actuators() noexcept {
 
 model::Command Guard::step(const model::Measurement& measured, Deadline deadline, const Cycle& cycle,
                            controller::StepResult& result) noexcept {
-  take_up_actuators();
+  adopt_learned_answer();
   if (commanded_.is_empty()) begin_with({measured.steer, measured.throttle}, measured.time);
   model::Measurement now = measured;
   now.delay = std::max(now.delay + learned_.answer().delay, 0.0);
@@ -122,13 +119,13 @@ model::Command Guard::step(const model::Measurement& measured, Deadline deadline
   // A guard that is on learns from what the monitor leaves, in watch_actuators(); any other from what its
   // controller gets.
   if (options_.mode != GuardMode::kOn) learned_.see(now, commanded_);
-  // What was in doubt while a person drove says nothing of where the person has driven to.
+  // After a person has driven, doubts of before hold no more: the guard begins again at this place.
   const bool is_handed_back = std::exchange(run_.is_by_hand, cycle.manual.has_value()) && !cycle.manual;
   if (is_handed_back && Supervisor::wants_trial(monitor_.findings())) {
     begin_here();
     monitor_.reset(/*forgets_lateness=*/true);
   }
-  const model::Measurement& seen = is_off ? now : look(now);
+  const model::Measurement& seen = is_off ? now : take_in(now);
   result = controller_->step(seen, deadline);
   watch_answer(seen, result.answer != Answer::kNone);
   report_ = {};
@@ -146,7 +143,7 @@ model::Command Guard::step(const model::Measurement& measured, Deadline deadline
   return asked;
 }
 
-/// The first command of a run acts later: until then the car has another one, by its telemetry.
+/// Begins the history of commands with the one in the telemetry, which acts until the run's first one does.
 void Guard::begin_with(const model::Command& acting, double time) noexcept {
   const bool is_plausible =
       std::fabs(acting.steer) <= vehicle_.steer_limit && std::fabs(acting.throttle) <= 1.0;
@@ -155,7 +152,7 @@ void Guard::begin_with(const model::Command& acting, double time) noexcept {
   sent_.add(time, answer_.effect_of(acting));
 }
 
-/// The last word: the command for the actuators, in range and rate.
+/// Compensates the actuators' deviation, limits range and rate, and notes what is sent.
 void Guard::send(const Cycle& cycle, const model::Command& asked, controller::StepResult& result) noexcept {
   const model::Command commanded = answer_.command_for(result.command);
   result.command = gate_.pass(cycle.manual.value_or(commanded), cycle.interval);
@@ -171,28 +168,28 @@ void Guard::send(const Cycle& cycle, const model::Command& asked, controller::St
   for (int i = 0; i < stop_.size; ++i) {
     StopPoint& point = stop_.points[static_cast<std::size_t>(i)];
     point.command = answer_.command_for(point.command);
-    point.time -= std::min(answer_.delay, 0.0);  // not before the next command as it is configured
+    point.time -= std::min(answer_.delay, 0.0);  // a negative delay: the stop begins with the next command
   }
 }
 
-/// What commands are sent for, and the effect of those that were.
-void Guard::count_with_answer() noexcept {
+/// Updates the deviation that commands compensate, and the effects of past commands with it.
+void Guard::update_answer() noexcept {
   constexpr ActuatorAnswer kUsual;
   const ActuatorAnswer& watched = options_.mode == GuardMode::kOn ? actuators_.answer() : kUsual;
   answer_ = watched.after(learned_.answer());
   sent_ = commanded_.changed([this](const model::Command& command) { return answer_.effect_of(command); });
 }
 
-/// Between two cycles: what was learned is driven with from now on, and what the watch found beyond it is
-/// looked for anew. In each mode of the guard: what it observes is what it would drive.
-void Guard::take_up_actuators() noexcept {
+/// Adopts the newly estimated deviation of the actuators, and begins to search for changes beyond it again.
+/// Runs in each mode, so that GuardMode::kObserve reports what kOn would do.
+void Guard::adopt_learned_answer() noexcept {
   if (!plans_with_car(*controller_)) return;
   const double delay = learned_.answer().delay;
   if (!learned_.take_up()) return;
   commanded_.delay(learned_.answer().delay - delay);
   actuators_.reset();
-  count_with_answer();
-  count_with_actuators();
+  update_answer();
+  update_model_vehicle();
 }
 
 void Guard::report_learned(controller::LearnedCar& learned) const noexcept {
@@ -201,7 +198,7 @@ void Guard::report_learned(controller::LearnedCar& learned) const noexcept {
   if (std::isfinite(grip.value)) learned.grip = grip;
 }
 
-/// How the actuators answer, by a measurement that nothing is wrong with; the guard drives with that.
+/// Estimates how the actuators answer. Measurements with findings are left out.
 void Guard::watch_actuators(const model::Measurement& seen) noexcept {
   if (monitor_.findings() != Findings{} || direction_.rolls_back()) return actuators_.skip();
   const ActuatorAnswer before = actuators_.answer();
@@ -215,25 +212,26 @@ void Guard::watch_actuators(const model::Measurement& seen) noexcept {
   actuators_.see(
       seen, commanded_.changed([&](const auto& command) { return learned_.answer().effect_of(command); }),
       use);
-  if (actuators_.answer() != before) count_with_answer();
-  if (actuators_.answer().braking != before.braking) count_with_actuators();
+  if (actuators_.answer() != before) update_answer();
+  if (actuators_.answer().braking != before.braking) update_model_vehicle();
 }
 
-/// The plausible part of a measurement; estimate and road take it in.
-const model::Measurement& Guard::look(const model::Measurement& measured) noexcept {
+/// Gives the plausible part of a measurement to estimate and road, and returns it.
+const model::Measurement& Guard::take_in(const model::Measurement& measured) noexcept {
   watch_for_reset(measured);
   std::optional<model::State> expected;
   const bool rolled_back = direction_.rolls_back();
   if (estimator_.is_started() && std::isfinite(measured.time) && !rolled_back)
     expected = estimator_.predict(measured.time, sent_).state;
-  // A heading that no car turns to says nothing of the direction.
+  // A heading that jumped does not show the direction of travel.
   model::Measurement course = measured;
   if (expected && std::fabs(angle_difference(measured.psi, expected->psi)) > MeasurementMonitor::kHeadingJump)
     course.psi = std::numeric_limits<double>::quiet_NaN();
-  // A car that drives forward, calmly, does not roll back in the next moment; a stuck sensor does not tell.
+  // A car that surely drives forward does not roll back in the next cycle, and a frozen sensor does not show
+  // it.
   const bool goes_on = expected && monitor_.is_sure() && expected->vx > kRollsBackAtMost;
   if (!goes_on && !monitor_.findings().frozen) direction_.see(course);
-  // Nothing is expected of a car that rolls back: the estimate goes the other way.
+  // The estimator has no model of rolling back: it begins again when the direction changes.
   if (direction_.rolls_back() != rolled_back) {
     estimator_.reset();
     monitor_.reset();
@@ -242,14 +240,14 @@ const model::Measurement& Guard::look(const model::Measurement& measured) noexce
   const model::Measurement& seen = monitor_.check(measured, expected ? &*expected : nullptr);
   // The waypoints of a place in doubt are in doubt, too: the stop needs the road that was known.
   if (options_.mode != GuardMode::kOn || !monitor_.findings().position_jump) road_.add(seen);
-  take_up_line();
+  adopt_line();
   watch_actuators(seen);
   estimator_.correct(seen, sent_);
   if (expected) note_residual(*expected, seen.time);
   return options_.mode == GuardMode::kOn ? seen : measured;
 }
 
-/// How far the estimate moved from its prediction for this measurement: a verified stop has to cover that.
+/// Difference between the estimate and its prediction for this measurement (eq. 5c).
 void Guard::note_residual(const model::State& expected, double time) noexcept {
   const model::State& now = estimator_.state();
   const auto [sine, cosine] = sine_cosine(now.psi);
@@ -280,14 +278,14 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
   if (!has_answer && !verdict.must_stop) report_.reason = GuardReason::kNoAnswer;
 
   // Without a road, or an estimate, there is nothing to check against: the answer is sent.
-  bool may_send = has_answer && !verdict.must_stop;
-  if (may_send && start) may_send = filter(*start, cycle, result);
+  bool is_allowed = has_answer && !verdict.must_stop;
+  if (is_allowed && start) is_allowed = may_send(*start, cycle, result);
   if (options_.mode == GuardMode::kObserve)
     return has_answer ? accept(seen, result) : fall_back(seen, result);
   // A controller that leaves a refused or led car standing does not get it back: the car is led on.
   run_.is_idle = has_answer && idles(result);
   const bool is_kept = run_.refused.lasts(seen.time) > kStuckTime || run_.is_led;
-  if (may_send && !run_.is_astray && !(run_.is_idle && is_kept)) {
+  if (is_allowed && !run_.is_astray && !(run_.is_idle && is_kept)) {
     // One accepted command does not move a car that stands.
     if (!run_.is_idle && !stands()) {
       run_.is_led = run_.creeps = run_.goes_round = false;
@@ -299,7 +297,7 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
   if (!verdict.must_stop && should_lead_back(seen.time, has_answer) && lead_back(sent_from_, cycle, result))
     return;
   if (run_.is_far && !verdict.must_stop) report_.reason = GuardReason::kFarFromRoad;
-  if (!start || !drive_backup(*start, result)) fall_back(seen, result);
+  if (!start || !drive_stop(*start, result)) fall_back(seen, result);
   // What brakes a car that goes forward may be the reverse gear of one that rolls back.
   if (direction_.rolls_back() && result.command.throttle < 0.0) {
     result.command.throttle = against_rolling_back();
@@ -307,8 +305,9 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
   }
 }
 
-/// Whether the answer may be sent; slowed down where it leaves only a closed-loop backup.
-bool Guard::filter(const StopStart& start, const Cycle& cycle, controller::StepResult& result) noexcept {
+/// Whether the answer may be sent, after slow_down() where only a closed-loop stop follows it. Sets the
+/// reason.
+bool Guard::may_send(const StopStart& start, const Cycle& cycle, controller::StepResult& result) noexcept {
   const Fit fit = verify(start, cycle, result.command);
   if (fit == Fit::kOpen) return true;
   report_.reason = GuardReason::kTooFastForSilence;  // unless nothing can be sent, below
@@ -318,7 +317,7 @@ bool Guard::filter(const StopStart& start, const Cycle& cycle, controller::StepR
   return false;
 }
 
-/// Of the command as the gate would send it.
+/// Searches for a stop after the command that the gate would send.
 Fit Guard::verify(const StopStart& start, const Cycle& cycle, const model::Command& command,
                   bool is_led) noexcept {
   return filter_.verify({.road = road_,
@@ -331,18 +330,18 @@ Fit Guard::verify(const StopStart& start, const Cycle& cycle, const model::Comma
                         report_);
 }
 
-/// The controller steers; the pedal is limited to gentle braking. False where that leaves no backup at all.
+/// The controller steers; the pedal is limited to gentle braking. False where no stop follows that either.
 bool Guard::slow_down(const StopStart& start, const Cycle& cycle, controller::StepResult& result) noexcept {
   model::Command slower = result.command;
-  const double slowing = filter_.planner().slowing(road_, start, kHeldBack);
+  const double slowing = filter_.planner().slowing(road_, start, PredictiveFilter::kGentle);
   slower.throttle = std::min(slower.throttle, throttle_for(model_.vehicle(), slowing, start.body.vx));
   if (slower.throttle < result.command.throttle && verify(start, cycle, slower) == Fit::kNone) return false;
   result.command = slower;
   return true;
 }
 
-/// The command inside range and rate, without the reverse gear: a stop ends in standstill. No drive beyond
-/// the speed up to which the car's parameters hold: no stop can be computed from there.
+/// The command inside range and rate. It has no reverse gear, because a stop ends in standstill, and no drive
+/// beyond the speed up to which the car's parameters hold, because no stop can be computed from there.
 model::Command Guard::limited(const model::Command& command, double interval) const noexcept {
   const model::Command commanded = answer_.command_for(command);
   const model::Command gated = gate_.limited(commanded, interval);
@@ -362,7 +361,7 @@ model::Command Guard::limited(const model::Command& command, double interval) co
   return inside;
 }
 
-/// The controller's answer is sent.
+/// Accepts the controller's answer, and gives its plan to the fallback.
 void Guard::accept(const model::Measurement& seen, controller::StepResult& result) noexcept {
   const bool stops = result.answer == Answer::kStopOnRoad;
   report_.rung = stops ? Rung::kStopOnRoad : Rung::kReturnToRoad;
@@ -388,18 +387,18 @@ void Guard::take_over(const model::Command& command, Rung rung, controller::Step
   report_.rung = rung;
 }
 
-/// The stored backup goes on; false where there is none.
-bool Guard::drive_backup(const StopStart& start, controller::StepResult& result) noexcept {
+/// Sends the stored stop; false where there is none.
+bool Guard::drive_stop(const StopStart& start, controller::StepResult& result) noexcept {
   const bool is_open = monitor_.findings().is_blind();
   const bool is_measured = !is_open && report_.reason == GuardReason::kNoWayToStop;
   if (!filter_.drive(road_, start, is_open, is_measured, report_)) return false;
   take_over(filter_.stop().points[0].command, Rung::kGuardStop, result);
-  show_backup(start, result.plan);
+  show_stop(start, result.plan);
   return true;
 }
 
-/// The backup as a plan, for viewers.
-void Guard::show_backup(const StopStart& start, controller::Plan& plan) const noexcept {
+/// Writes the stored stop as a plan, for viewers.
+void Guard::show_stop(const StopStart& start, controller::Plan& plan) const noexcept {
   const road::ReferenceLine& line = road_.line();
   StopStart at = start;
   double edge = 0.0, driven = 0.0;

@@ -34,7 +34,7 @@ namespace chicane::safety {
 
 /// Safety filter around any controller (docs/safety.md). One cycle, step(), has six stages:
 ///
-///     1 actuators   takes up what was learned of steering and delay               take_up_actuators
+///     1 actuators   takes up what was learned of steering and delay               adopt_learned_answer
 ///     2 look        gives the plausible part of the measurement to road,          MeasurementMonitor,
 ///                   actuators and estimate; starts again if the car was moved     ResetWatch
 ///     3 controller  takes its answer; resets it after a second without one        watch_answer
@@ -50,7 +50,7 @@ namespace chicane::safety {
 ///     answer or the car's place is not known
 ///     a doubt lasts, the car stands              trial: half a car length              try_reset
 ///     the car is astray, or stands refused       walking pace back to the line         lead_back
-///     the car's place on the road is known       the stored stop                       drive_backup
+///     the car's place on the road is known       the stored stop                       drive_stop
 ///     none of these                              Fallback                              fall_back
 ///
 /// GuardMode::kObserve computes the first two rows, and sends the controller's answer. After each answer that
@@ -121,11 +121,11 @@ class Guard {
 
   // The measurement: what of it is plausible, and what it tells of car, road and actuators.
   /// Stage 2 of a cycle; returns what the controller gets.
-  [[nodiscard]] const model::Measurement& look(const model::Measurement& measured) noexcept;
+  [[nodiscard]] const model::Measurement& take_in(const model::Measurement& measured) noexcept;
   /// Difference between the estimate and its prediction `expected`: a verified stop has to cover it (eq. 5c).
   void note_residual(const model::State& expected, double time) noexcept;
   /// Drops the place along a line that the road has replaced.
-  void take_up_line() noexcept;
+  void adopt_line() noexcept;
   /// Sets grip_.
   void set_grip(double share) noexcept;
   /// State of the car along the road when a command acts at `act_time` [s]; none: car or road are lost.
@@ -135,8 +135,8 @@ class Guard {
   /// Stage 4 of a cycle.
   void choose(const model::Measurement& seen, const Cycle& cycle, controller::StepResult& result) noexcept;
   /// Whether the answer may be sent, after slow_down() where it leaves only a closed-loop stop.
-  [[nodiscard]] bool filter(const StopStart& start, const Cycle& cycle,
-                            controller::StepResult& result) noexcept;
+  [[nodiscard]] bool may_send(const StopStart& start, const Cycle& cycle,
+                              controller::StepResult& result) noexcept;
   /// PredictiveFilter::verify() of the command that the gate would send.
   [[nodiscard]] Fit verify(const StopStart& start, const Cycle& cycle, const model::Command& command,
                            bool is_led = false) noexcept;
@@ -153,9 +153,9 @@ class Guard {
   void take_over(const model::Command& command, controller::Rung rung,
                  controller::StepResult& result) noexcept;
   /// Sends the stored stop; false: there is none.
-  [[nodiscard]] bool drive_backup(const StopStart& start, controller::StepResult& result) noexcept;
+  [[nodiscard]] bool drive_stop(const StopStart& start, controller::StepResult& result) noexcept;
   /// Writes the stored stop to `plan`, for viewers.
-  void show_backup(const StopStart& start, controller::Plan& plan) const noexcept;
+  void show_stop(const StopStart& start, controller::Plan& plan) const noexcept;
   /// Begins commanded_ and sent_ with the command that acts before the first one of a run.
   void begin_with(const model::Command& acting, double time) noexcept;
   /// Stage 6 of a cycle. `asked`: the command before stage 5.
@@ -215,13 +215,13 @@ class Guard {
 
   // The actuators: how they answer, and which commands compensate for it.
   /// Sets the models to the brakes and the grip as estimated.
-  void count_with_actuators() noexcept;
+  void update_model_vehicle() noexcept;
   /// Updates actuators_ and learned_.
   void watch_actuators(const model::Measurement& seen) noexcept;
   /// Stage 1 of a cycle.
-  void take_up_actuators() noexcept;
+  void adopt_learned_answer() noexcept;
   /// Sets answer_, and sent_ by it.
-  void count_with_answer() noexcept;
+  void update_answer() noexcept;
   void report_learned(controller::LearnedCar& learned) const noexcept;
 
   Owned<controller::Controller> controller_;

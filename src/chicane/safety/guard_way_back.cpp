@@ -80,7 +80,7 @@ void Guard::use_line(std::shared_ptr<const road::RacingRoad> lap) {
   // The road that the lap was planned for has to be the one that the guard knows.
   if (lap && lap->is_learned() == (options_.road == GuardRoad::kWaypoints)) {
     road_.use_line(lap.get());
-    take_up_line();
+    adopt_line();
   }
   estimator_.mind_helper_gap(lap != nullptr);
   set_grip(lap ? lap->terms().grip : 1.0);
@@ -88,7 +88,7 @@ void Guard::use_line(std::shared_ptr<const road::RacingRoad> lap) {
 }
 
 /// The road's line is another one. The stored policy is a law that holds on any line of the road: it stays.
-void Guard::take_up_line() noexcept {
+void Guard::adopt_line() noexcept {
   if (revision_ == road_.revision()) return;
   revision_ = road_.revision();
   run_.has_place = false;
@@ -419,7 +419,7 @@ bool Guard::turn_wheels_only(const LedCar& led, bool waits, controller::StepResu
   const double steer = result.command.steer;
   if (led.stands && !waits && !stays_on_road(led, steer, run_.goes_round))
     report_.reason = controller::GuardReason::kFacesEdge;
-  const bool has_stop = led.may_creep && drive_backup(*led.start, result);
+  const bool has_stop = led.may_creep && drive_stop(*led.start, result);
   if (!has_stop && !led.stands) return false;
   if (!has_stop) take_over({steer, 0.0}, Rung::kReturnToRoad, result);
   result.command.steer = steer;

@@ -15,18 +15,15 @@ namespace {
 // Origins (chosen: by trial, see Guard):
 // - Derived: kDeviations (95 % of a normal distribution), kWalkingPace (pace of tracking::way_back), kCrawl
 //   (Guard::kStandingSpeed), kUnfit (farther than any edge).
-// - Measured: kLateness (docs/guard.md, "Late commands": the original answers after 160 ms at most, 100 are
-//   configured), kMostLoss (eq. 5d: f1tenth loses 0.3 m), kFirstHold (after a check of one cycle a led car
-//   comes over the edge, cycle by cycle).
-// - Chosen, docs/guard.md: kLongestHold, kTurnReserve, kLedShare, kMostSlip, kMostSlipOfSlides (eq. 6, 6a),
+// - Measured: kMostLoss (eq. 5d: f1tenth loses 0.3 m), kFirstHold (after a check of one cycle a led car comes
+//   over the edge, cycle by cycle).
+// - Chosen, docs/guard.md: kTurnReserve, kLedShare, kMostSlip, kMostSlipOfSlides (eq. 6, 6a),
 //   kRecovery ("Open loop"), kDrivenOpen ("Driven"), kKeptLoss (eq. 5d), kMemory (eq. 5c), kDwell,
 //   kCalmSlip ("Given back").
 // - Chosen: kAssumedCycle (above each answer of the original), kShortestHold (just below Policy::hold),
 //   kNearer (what a stop may lose by its steps).
 constexpr double kAssumedCycle = 0.25;  // [s] between commands where that is not known: after the first one
-constexpr double kLateness = 0.06;      // [s] by which the next command may come late, before a stop begins
 constexpr double kShortestHold = 0.09;  // [s] a command is held where the next one comes at once
-constexpr double kLongestHold = 0.75;   // [s] a command is held, at most
 constexpr double kFirstHold = 0.5;      // [s] the command by which a led car begins to move is held
 constexpr double kRecovery = 0.5;       // [s] after a silence until the car is controlled again
 constexpr double kDrivenOpen = 2.0;     // [s] of silence for which a stop that is being driven is verified
@@ -54,8 +51,8 @@ constexpr double kUnfit = 200.0;     // [m] worse than any candidate that fits
 
 // Braking of a stop: gentle, hard, hard with less and less static stability left (eq. 5). Chosen: below 1 the
 // car diverges without feedback.
-constexpr Braking kGentle{0.8, 1.6, 0.7}, kHard{1.0, 1.6, 0.7}, kBarelyStable{1.0, 1.1}, kHeld{1.0, 0.7},
-    kUnstable{1.0, 0.0};
+constexpr Braking kGentle = PredictiveFilter::kGentle, kHard{1.0, 1.6, 0.7}, kBarelyStable{1.0, 1.1},
+                  kHeld{1.0, 0.7}, kUnstable{1.0, 0.0};
 
 /// One law of the family, in the order in which they are tried: the calm ones, those with the feedback for a
 /// car that crosses its road, those for a planned lap. Chosen: no single law stops all cars (docs/guard.md).

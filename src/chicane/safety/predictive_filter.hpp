@@ -30,6 +30,12 @@ enum class Fit : std::uint8_t {
 /// Deterministic; no allocation after construction; one thread.
 class PredictiveFilter {
  public:
+  /// [s] by which the next command may come late, before a stop begins. Measured (docs/guard.md, "Late
+  /// commands"): the original answers after 160 ms at most, 100 are configured.
+  static constexpr double kLateness = 0.06;
+  static constexpr double kLongestHold = 0.75;  ///< [s] a command is held, at most; chosen, docs/guard.md
+  /// Braking of the first law: gentle, and stable without feedback. Chosen.
+  static constexpr Braking kGentle{0.8, 1.6, 0.7};
   /// Fixed for a run.
   struct Terms {
     double margin = 0.2;      ///< of the tyres from the edge in a stop [m]

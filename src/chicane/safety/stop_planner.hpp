@@ -88,7 +88,7 @@ class StopPlanner {
                                StopPlan& out, double least = kToTheEnd) const noexcept;
   /// The same policy, with its feedback, in two cars that differ from the model: less friction, the rear axle
   /// softer and stiffer, and `doubt` to either side (eq. 5b). Given up where one comes nearer than `least`
-  /// [m].
+  /// [m]; distances to the edge above it are returned as `least`.
   [[nodiscard]] DoubtCheck plan_in_doubt(const road::KnownRoad& road, const StopStart& start,
                                          const Policy& policy, const Doubt& doubt,
                                          double least) const noexcept;
