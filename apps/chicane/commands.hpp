@@ -22,7 +22,7 @@ using RowsOf = Rows(Options& options);
 
 /// Command of the program.
 struct Command {
-  std::string_view name;     ///< as typed
+  std::string_view name;     ///< name as typed
   std::string_view group;    ///< heading in the help
   std::string_view summary;  ///< one line of the help
   std::string_view example;  ///< a command line

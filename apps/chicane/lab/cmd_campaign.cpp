@@ -31,7 +31,7 @@ using sweep::CampaignTrial;
 /// Row of the table: all trials of one fault or pair and one duration, with one car and preset, on all
 /// tracks.
 struct Row {
-  std::string car{}, preset{}, fault{}, lasts{};  ///< as in CampaignGroup
+  std::string car{}, preset{}, fault{}, lasts{};  ///< fields of CampaignGroup
   std::int64_t trials = 0, off = 0;        ///< numbers of trials, and of those off the road by the fault
   std::int64_t off_anyway = 0;             ///< trials off the road also without the fault
   std::int64_t lasting = 0, standing = 0;  ///< trials with a lasting fault, and cars that stand in the end

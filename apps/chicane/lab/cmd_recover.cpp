@@ -48,7 +48,7 @@ double time_in(const Json& line, const char* key) {
   return value.is_null() ? WayBackOutcome::kNever : value.get<double>();
 }
 
-/// What went wrong, in words.
+/// Error, in words.
 std::string verdict(const Json& line) {
   const double least_edge = time_in(line, "least_edge_m");
   if (least_edge < 0.0) return fmt::format("leaves it again by {:.2f} m", -least_edge);
@@ -251,7 +251,7 @@ Json json_of(const run::LaneChangeLimit& limit) {
           {"passed_above", limit.failed.has_passed()}};
 }
 
-/// What happens at the next higher speed, in words.
+/// Event at the next higher speed, in words.
 std::string why_not_faster(const Json& line) {
   const Json& room = line.at("room_above_m");
   if (line.at("passed_above").get<bool>()) return "passed every speed tried";

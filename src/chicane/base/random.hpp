@@ -44,7 +44,7 @@ class Fnv {
  public:
   /// Adds the eight bytes of a number, the lowest first.
   void add(std::uint64_t value) noexcept {
-    constexpr std::uint64_t kPrime = 0x100000001b3ULL;  // of FNV with 64 bits
+    constexpr std::uint64_t kPrime = 0x100000001b3ULL;  // prime of FNV with 64 bits
     for (int shift = 0; shift < 64; shift += 8) hash_ = (hash_ ^ ((value >> shift) & 0xffU)) * kPrime;
   }
   /// Adds the bits of a number; 0.0 and -0.0 count as equal.

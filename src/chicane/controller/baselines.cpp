@@ -188,7 +188,7 @@ class PidLaw {
 
   PidOptions options_;
   double steer_limit_ = 0.0;  ///< [rad]
-  double integral_ = 0.0;     ///< of the cross-track error [m s]
+  double integral_ = 0.0;     ///< integral of the cross-track error [m s]
 };
 
 /// Pure pursuit (PurePursuitOptions).
@@ -211,7 +211,7 @@ class PurePursuitLaw {
     const double sine = sin(view.now.psi);
     const double dx = target.x() - (view.now.x - rear_axle_ * cosine);
     const double dy = target.y() - (view.now.y - rear_axle_ * sine);
-    const double sideways = cosine * dy - sine * dx;  // of the target from the rear axle, left positive [m]
+    const double sideways = cosine * dy - sine * dx;  // target's offset from the rear axle, left positive [m]
     return atan(2.0 * wheelbase_ * sideways / std::max(dx * dx + dy * dy, 1e-6));
   }
   void reset() noexcept {}

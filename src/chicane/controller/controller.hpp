@@ -68,7 +68,7 @@ struct Explanation {
   std::array<double, kMaxCostTerms> cost_terms{};
   int cost_term_count = 0;
 
-  SpeedLimiter speed_limiter = SpeedLimiter::kNone;  ///< what limits the speed
+  SpeedLimiter speed_limiter = SpeedLimiter::kNone;  ///< limit that holds the speed
   /// Allowed speed at the place where the command acts [m/s]; NaN: unknown.
   double speed_limit = std::numeric_limits<double>::quiet_NaN();
 

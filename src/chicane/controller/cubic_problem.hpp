@@ -246,8 +246,8 @@ struct CubicProblem {
   double steer_limit;     ///< [rad]
   double speed_unit;      ///< speed of the model for 1 m/s
   double speed_reference;            ///< reference speed in the model's unit
-  double error_sign;                 ///< as in DescribedModel
-  double heading_reach;              ///< as in DescribedModel
+  double error_sign;                 ///< same as in DescribedModel
+  double heading_reach;              ///< same as in DescribedModel
   bool is_lateral_recursive;         ///< cte⁺ = cte + v sin eψ dt; pre: heading_reach is 0
   bool acts_late;                    ///< inputs of a stage act in the next stage
   std::array<double, kNr> root;      ///< √(2 weight) of: cte, eψ, v, δ, a, Δδ, Δa, v δ
@@ -286,7 +286,7 @@ struct CubicProblem {
   /// Factor of a residual with this weight.
   static double weight_root(double weight) noexcept { return sqrt(2.0 * weight); }
 
-  double lateral_by_x_ = 0.0, lateral_by_y_ = -1.0;  ///< as in DescribedModel
+  double lateral_by_x_ = 0.0, lateral_by_y_ = -1.0;  ///< same as in DescribedModel
 };
 
 }  // namespace chicane::controller

@@ -141,7 +141,7 @@ class SlipReserve {
   static constexpr double kFast = 20.0;    ///< speed below which the reserve falls with it [m/s]; chosen
   static constexpr double kNothing = 0.1;  ///< reserve below which a plan keeps none; chosen
 
-  /// Begins anew.
+  /// Begins again.
   void forget() noexcept { *this = {}; }
   /// Takes in the estimate of one cycle, if the car corners. `delay`: from a measurement to the effect of its
   /// command [s].

@@ -80,7 +80,7 @@ bool means(const Meaning& meaning, std::string_view name) {
 
 /// Header of a CSV file.
 struct Header {
-  /// By quantity; none: the file has no column for it.
+  /// Columns by quantity; none: the file has no column for it.
   std::array<std::optional<Column>, kQuantities> columns;
   std::size_t count = 0;  ///< number of all columns
 };

@@ -14,7 +14,7 @@ namespace chicane::identify {
 
 /// Measured pose of the car, in axes with x forward, y left and yaw positive to the left (docs/notation.md).
 struct Sample {
-  double time = 0.0;                                           ///< by the clock of the log [s]
+  double time = 0.0;                                           ///< time by the clock of the log [s]
   double x = 0.0;                                              ///< x of the reference point [m]
   double y = 0.0;                                              ///< y of the reference point [m]
   double psi = 0.0;                                            ///< [rad], not wrapped at π

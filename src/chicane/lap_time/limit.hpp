@@ -78,7 +78,7 @@ struct PlantLimit {
   int nodes = 0;                     ///< nodes of the optimum
   SearchEffort effort{};             ///< effort of all searches
   SearchEffort of_optimum{};         ///< effort of the search without reserve
-  double stationarity = 0.0;         ///< at the optimum: largest slope of the Lagrangian, scaled
+  double stationarity = 0.0;         ///< largest slope of the Lagrangian at the optimum, scaled
   double violation = 0.0;            ///< largest violated equation or inequality, scaled
 
   /// Whether the bound is one and no budget ended a search: the answer is the same without one.
@@ -115,7 +115,7 @@ struct PlantLimitOptions {
 /// Bound of a plant (PlantLimit) for comparison with driven laps.
 struct Limit {
   LapTimes times;
-  std::vector<road::LinePoint> line;  ///< by rising time from the start line; the last repeats the first
+  std::vector<road::LinePoint> line;  ///< points by time from the start line; the last repeats the first
 };
 
 /// Times [s] of the corners of `track` in a closed lap, each with half of the straights beside it

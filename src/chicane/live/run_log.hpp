@@ -148,7 +148,7 @@ class RunLog {
   const char* why_unknown_ = nullptr;    ///< reason for which the run is unknown; null: it is known
   std::deque<Event> events_;             ///< events since the start, or the newest of them
   Place first_;                          ///< place before the first of events_
-  std::vector<Checkpoint> checkpoints_;  ///< by rising time
+  std::vector<Checkpoint> checkpoints_;  ///< checkpoints by rising time
   run::Worker worker_;                   ///< last member: its thread uses the others
 };
 

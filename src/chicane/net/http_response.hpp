@@ -21,8 +21,8 @@ namespace chicane::net {
 struct Content {
   std::string content_type{};  ///< media type, like "text/plain"
   std::string bytes{};
-  std::shared_ptr<const std::string> shared{};  ///< if not null: used in place of `bytes`, without a copy
-  std::string file{};     ///< if not empty: path of a file, which is read at each answer
+  std::shared_ptr<const std::string> shared{};  ///< content without a copy, before `bytes`; null: none
+  std::string file{};                           ///< path of a file that is read at each answer; empty: none
   std::string save_as{};  ///< if not empty: browsers save under this name; no quotes, no line ends
 };
 

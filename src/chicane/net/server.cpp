@@ -368,7 +368,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   /// Place of this connection in Core::visitors.
   std::list<HttpConnection*>::iterator place_ = core_.visitors.insert(core_.visitors.end(), this);
   beast::flat_buffer buffer_{core_.options.max_header + 2 * kKeptBuffer};
-  std::optional<http::request_parser<http::empty_body>> parser_;  ///< of one request
+  std::optional<http::request_parser<http::empty_body>> parser_;  ///< parser of one request
   std::array<char, 1024> rest_{};                                 ///< bytes that linger() throws away
   std::string host_;                                              ///< Host header of the last request
   std::string piece_;                                             ///< part of the answer being written

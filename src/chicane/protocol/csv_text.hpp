@@ -95,7 +95,7 @@ class CsvLines {
 
  private:
   std::string_view rest_;  ///< text after the last line
-  int number_ = 0;         ///< of the last line
+  int number_ = 0;         ///< number of the last line
 };
 
 /// Whether a word is in a list of words that has a blank before and after each: " x y_m ".

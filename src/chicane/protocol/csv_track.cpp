@@ -24,7 +24,7 @@ namespace {
 /// Names of columns with one meaning.
 struct Meaning {
   Column column;
-  std::string_view names;  ///< with a blank before and after each
+  std::string_view names;  ///< names, a blank before and after each
 };
 constexpr std::array kMeanings{
     Meaning{Column::kX, " x_m x x_ref_m x[m] x(m) pos_x position_x easting "},
@@ -39,7 +39,7 @@ constexpr std::string_view kTagNames = " tag color colour type class side ";
 
 // Chosen: bounds memory and messages.
 constexpr std::size_t kMaxLine = 65536;     // [byte]
-constexpr std::size_t kMostColumns = 1000;  // of a table
+constexpr std::size_t kMostColumns = 1000;  // columns of a table
 constexpr std::size_t kMostNamed = 8;       // unknown columns in one warning
 
 constexpr double kSameAngle = 0.3;  // [rad] scatter of headings computed from points; chosen
@@ -232,13 +232,13 @@ class TableReader {
   struct OtherNames {
     int line = 0;
     std::string text;
-    std::size_t count = 0;  ///< of the names
+    std::size_t count = 0;  ///< count of the names
   };
 
   RoadRows rows_;
   bool has_tags_;  ///< a table of cones
   OtherNames other_names_;
-  char separator_ = '\0';  ///< of the rows, found in the first one
+  char separator_ = '\0';  ///< separator of the rows, found in the first one
   int line_ = 0;           ///< number of the current line
 };
 

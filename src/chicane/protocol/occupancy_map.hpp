@@ -28,7 +28,7 @@ struct OccupancyMap {
   /// Whether a cell has the grey that map_saver writes for unknown ones. The grey is lighter than the
   /// free_thresh of 0.25 that nav2 writes in the same file.
   [[nodiscard]] bool is_unknown(int x, int y) const noexcept {
-    constexpr int kUnknown = 205;  // of map_saver
+    constexpr int kUnknown = 205;  // value of map_saver
     return !is_negated && grey(x, y) == kUnknown;
   }
 

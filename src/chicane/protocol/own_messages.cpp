@@ -364,7 +364,7 @@ struct Colour {
 };
 constexpr Colour kAsphalt{0.33, 0.35, 0.39}, kPaint{0.92, 0.93, 0.95}, kBody{0.15, 0.39, 0.85},
     kCabin{0.11, 0.13, 0.17}, kTire{0.07, 0.07, 0.08};
-constexpr double kLineWidth = 0.25;  // of an edge's line [m]
+constexpr double kLineWidth = 0.25;  // width of an edge's line [m]
 constexpr double kPaintHeight =
     0.02;  // of edges' lines above the road [m], so that viewers draw them over it
 

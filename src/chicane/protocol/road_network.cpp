@@ -100,7 +100,7 @@ constexpr double kMostKink = 0.05;     // [rad] between pieces of a reference li
 
 /// Polynomial a + b u + c u² + d u³ of u = s − from.
 struct Cubic {
-  double from = 0.0;                ///< where it begins [m]
+  double from = 0.0;                ///< begin [m]
   std::array<double, 4> factors{};  ///< a to d
   [[nodiscard]] double at(double s) const {
     const double u = s - from;
@@ -208,7 +208,7 @@ class Geometry {
   }
 
   Vec2 place_{};                         ///< beginning [m]
-  double heading_ = 0.0, length_ = 0.0;  ///< at the beginning [rad], and [m]
+  double heading_ = 0.0, length_ = 0.0;  ///< heading at the beginning [rad], length [m]
   double begin_ = 0.0, end_ = 0.0;       ///< curvature at both ends [1/m]; linear between
   std::optional<Cubic> across_,
       along_;                   ///< polynomials v and u in the frame of the beginning; without along_ u = s

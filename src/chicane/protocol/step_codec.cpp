@@ -7,7 +7,7 @@
 namespace chicane::protocol {
 namespace {
 
-constexpr int kMeaningColumn = 24;  // at which meanings begin in the definition; chosen
+constexpr int kMeaningColumn = 24;  // column at which meanings begin in the definition; chosen
 
 /// Fields of the message. Differs from Step where a message has no such type.
 struct StepMessage {

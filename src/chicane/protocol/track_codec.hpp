@@ -37,7 +37,7 @@ struct TrackReadOptions {
 /// Content of a road's file before it becomes a road.
 struct TrackFile {
   std::string file;                      ///< name for messages
-  std::vector<road::TrackPoint> points;  ///< of a closed road without a last point that repeats the first
+  std::vector<road::TrackPoint> points;  ///< points; on a closed road the last one does not repeat the first
   std::vector<int> lines;                ///< line of each point in the file, from 1
   bool is_closed = true;
   road::TrackOptions options;         ///< options in the file, else the defaults
@@ -46,7 +46,7 @@ struct TrackFile {
 };
 
 // Limits of road files. Chosen: beyond any road, to bound memory.
-inline constexpr double kMaxTrackWidth = 1000.0;  ///< to one side [m]
+inline constexpr double kMaxTrackWidth = 1000.0;  ///< width to one side [m]
 inline constexpr double kMaxTrackScale = 1000.0;
 inline constexpr std::size_t kMaxTrackPoints = 1'000'000;
 inline constexpr std::size_t kMaxTrackBytes = std::size_t{64} << 20U;  // [byte]

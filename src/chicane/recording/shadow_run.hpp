@@ -116,7 +116,7 @@ struct Future {
 struct FutureStep {
   const telemetry::Frame& frame;
   double distance = 0.0;   ///< distance along the line since the start line of the lap of the branch [m]
-  bool is_branch = false;  ///< of the second future
+  bool is_branch = false;  ///< the frame is of the second future
 };
 
 /// Plant in place of a car that another program simulates.

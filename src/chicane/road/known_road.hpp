@@ -46,9 +46,9 @@ class KnownRoad {
   using Edges = Road::Room;
   /// Edges at arc length s [m] of the line. Pre: the line is not empty.
   [[nodiscard]] Edges edges(double s) const noexcept;
-  /// What each step of a simulated stop needs of its place, in one look-up.
+  /// Values that each step of a simulated stop needs at its place, in one look-up.
   struct Here {
-    double curvature = 0.0;  ///< of the line [1/m]
+    double curvature = 0.0;  ///< curvature of the line [1/m]
     Edges narrowest{};       ///< lower bounds of edges() within kReach; minus infinity with waypoints [m]
   };
   [[nodiscard]] Here here(double s) const noexcept;
@@ -93,9 +93,9 @@ class KnownRoad {
   void find_narrowest() noexcept;
 
   ReferenceLine line_;          ///< line of a track, or racing line
-  std::vector<Room> rooms_;     ///< at the samples of line_
+  std::vector<Room> rooms_;     ///< rooms at the samples of line_
   std::optional<Road> seen_;    ///< road learned from waypoints; none on a track
-  double half_width_ = 0.0;     ///< from the waypoints' line to each edge [m]
+  double half_width_ = 0.0;     ///< distance from the waypoints' line to each edge [m]
   double next_waypoint_ = 0.0;  ///< assumed distance from the last waypoint to the next [m]
   unsigned lines_ = 0;          ///< number of changes of line_
   bool is_raced_ = false;       ///< line_ is a racing line

@@ -183,7 +183,7 @@ class LinePlanner {
   /// Knot of the new line.
   struct Moved {
     CurvePoint curve;
-    double offset = 0.0;  ///< to the left of the waypoint line [m]
+    double offset = 0.0;  ///< offset to the left of the waypoint line [m]
     double s = 0.0;       ///< along the new line [m]
   };
   void take(const WaypointLine& source,
@@ -202,7 +202,7 @@ class LinePlanner {
   std::vector<Moved> moved_;       ///< knots of the new line
   double from_ = 0.0;              ///< start along the waypoint line [m]
   double length_ = 0.0;            ///< along the waypoint line [m]
-  double spacing_ = 1.0;           ///< of the knots [m]
+  double spacing_ = 1.0;           ///< spacing of the knots [m]
   int intervals_ = 0;              ///< between knots
   int extra_ = 0;                  ///< knots of the overlap at each end; 0 for a stretch
   int behind_ = 0;                 ///< moved knot before the last sample

@@ -81,7 +81,7 @@ struct RoadData {
   bool is_closed = false;
   double length = 0.0;            ///< length of the centre line [m]
   std::vector<RoadPoint> points;  ///< by rising s from 0 to length; a closed road's last repeats its first
-  std::vector<LinePoint> racing_line;  ///< by rising time; a lap's last repeats its first; empty: none known
+  std::vector<LinePoint> racing_line;  ///< points by rising time; a lap's last repeats its first; empty: none
 };
 
 /// Road of a track, at points spaced evenly by at most `spacing` [m], without a racing line. On a closed road
@@ -157,7 +157,7 @@ class RacingRoad {
 
   ReferenceLine line_;
   std::vector<Road::Room> rooms_;  ///< rooms at the line's samples
-  std::vector<double> sideslips_;  ///< at the line's samples [rad]
+  std::vector<double> sideslips_;  ///< sideslips at the line's samples [rad]
   Basis basis_;
 };
 

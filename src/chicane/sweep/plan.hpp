@@ -72,7 +72,7 @@ struct Plan {
 
   std::string name{};
   Settings fixed{};                 ///< settings of all runs
-  std::vector<Axis> axes{};         ///< consecutive runs differ in the place of the last axis
+  std::vector<Axis> axes{};         ///< axes; consecutive runs differ in the last one
   std::optional<Search> search{};   ///< none: each run is driven once
   std::vector<std::string> keep{};  ///< columns of the results (trial.hpp); empty: all
 

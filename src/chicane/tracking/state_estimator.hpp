@@ -156,7 +156,7 @@ class StateEstimator {
   /// Corrects the estimate by a measurement that lies (dx, dy) [m] in W and dpsi [rad] from its prediction.
   void take_over(const model::Measurement& now, double dx, double dy, double dpsi) noexcept;
   struct Correction {
-    ErrorCovariance::Vector by;  ///< what is added to the estimate
+    ErrorCovariance::Vector by;  ///< change of the estimate
     double share;                ///< gain of a position innovation for the position, also along the car
   };
   /// Correction by innovations to the left [m] and of the heading [rad], `elapsed` [s] after the previous

@@ -19,7 +19,7 @@ namespace chicane::identify {
 struct LogRows {
   std::vector<Sample> samples;
   std::vector<SentCommand> commands;
-  bool is_centre_of_mass = false;  ///< as in DriveLog
+  bool is_centre_of_mass = false;  ///< same as in DriveLog
 };
 
 /// Reads the text of a CSV file. kParse with `file:line: column: got X, expected Y`.

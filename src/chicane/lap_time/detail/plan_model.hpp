@@ -15,7 +15,7 @@
 #include "chicane/road/racing_road.hpp"
 #include "chicane/road/track.hpp"
 
-/// What a car and a road are for the search of a fastest lap: the road at nodes, the functions of a node, the
+/// Car and road as the search of a fastest lap sees them: the road at nodes, the functions of a node, the
 /// first guess, and the check that the car fits the road.
 
 namespace chicane::lap_time {

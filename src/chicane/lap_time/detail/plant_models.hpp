@@ -287,9 +287,9 @@ struct DoubleTrackModel {
  private:
   using Corners = model::Rounded;
   // Widths of rounded corners; chosen.
-  static constexpr double kPedalCorner = 0.01;  ///< of the pedal at 0
-  static constexpr double kLoadCorner = 50.0;   ///< of a wheel's load at 0 [N]
-  static constexpr double kLeastSlip = 1e-3;    ///< of the slip's size at 0
+  static constexpr double kPedalCorner = 0.01;  ///< rounding of the pedal at 0
+  static constexpr double kLoadCorner = 50.0;   ///< rounding of a wheel's load at 0 [N]
+  static constexpr double kLeastSlip = 1e-3;    ///< rounding of the slip's size at 0
 };
 
 /// The car as a controller models it (model/prediction.hpp), in continuous time (docs/racing.md, section 1).

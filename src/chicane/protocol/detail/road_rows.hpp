@@ -68,7 +68,7 @@ enum class Column : std::uint8_t {
 struct RoadRows {
   /// Column by the name that the file has for it.
   struct Named {
-    std::string name;  ///< for messages
+    std::string name;  ///< name in messages
     Column column = Column::kUnknown;
   };
 

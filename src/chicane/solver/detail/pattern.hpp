@@ -14,7 +14,7 @@ namespace chicane::solver {
 // Patterns of the linear-quadratic problem: which entries can differ from zero, where they are stored, and
 // the storage itself.
 
-/// What is known at compile time of one entry of a Jacobian.
+/// One entry of a Jacobian, as known at compile time.
 enum class Entry : std::uint8_t { kZero, kOne, kValue };
 
 /// Pattern without zeros. A pattern is a type that names the entries of a linear-quadratic problem's stages
