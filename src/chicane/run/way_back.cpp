@@ -14,11 +14,17 @@ namespace {
 
 constexpr double kStandingSpeed = 0.3;  // [m/s] speed below which the car stands; chosen
 
-/// Sets the motion of a car: `speed` [m/s], sideslip `slip` [rad] to the left, and yaw rate [rad/s].
-void set_motion(model::State& car, double speed, double slip, double yaw_rate) {
-  car.vx = speed * cos(slip);
-  car.vy = speed * sin(slip);
-  car.r = yaw_rate;
+/// Motion of the centre of mass. Random values are drawn in this order.
+struct Motion {
+  double yaw_rate = 0.0;  ///< [rad/s]
+  double slip = 0.0;      ///< direction of the velocity off the car's heading, left positive [rad]
+  double speed = 0.0;     ///< [m/s]
+};
+
+void set_motion(model::State& car, const Motion& motion) {
+  car.vx = motion.speed * cos(motion.slip);
+  car.vy = motion.speed * sin(motion.slip);
+  car.r = motion.yaw_rate;
 }
 
 /// Random number with magnitude in [low, high] and either sign.
@@ -33,15 +39,17 @@ void set_random_motion(model::State& car, StartKind kind, Random& chance) {
     case StartKind::kStanding:
       return;
     case StartKind::kRolling:
-      return set_motion(car, chance.uniform(2.0, 25.0), 0.0, 0.0);
+      return set_motion(car, {.speed = chance.uniform(2.0, 25.0)});
     case StartKind::kSliding:
-      return set_motion(car, chance.uniform(5.0, 25.0), chance.uniform(-kPi / 3.0, kPi / 3.0),
-                        chance.uniform(-1.0, 1.0));
+      return set_motion(car, {.yaw_rate = chance.uniform(-1.0, 1.0),
+                              .slip = chance.uniform(-kPi / 3.0, kPi / 3.0),
+                              .speed = chance.uniform(5.0, 25.0)});
     case StartKind::kBackwards:
-      return set_motion(car, -chance.uniform(1.0, 8.0), 0.0, 0.0);
+      return set_motion(car, {.speed = -chance.uniform(1.0, 8.0)});
     case StartKind::kSpun:
-      return set_motion(car, chance.uniform(5.0, 20.0), either_sign(chance, kPi / 2.0, kPi),
-                        chance.uniform(-3.0, 3.0));
+      return set_motion(car, {.yaw_rate = chance.uniform(-3.0, 3.0),
+                              .slip = either_sign(chance, kPi / 2.0, kPi),
+                              .speed = chance.uniform(5.0, 20.0)});
   }
 }
 
