@@ -170,7 +170,7 @@ class Guard {
     bool stands = false;               ///< slower than kStandingSpeed, and does not roll back
     bool is_on_road = false;           ///< all contact patches are inside the edges
     bool may_creep = false;            ///< on the road, and slow enough to turn on an arc beside the edge
-    double least_edge = 0.0;           ///< distance to the edge that an arc has to keep (eq. 6c) [m]
+    double hold = 0.0;                 ///< time for which a command may act [s]
   };
   /// Updates run_.is_astray.
   void watch_course(const std::optional<StopStart>& start) noexcept;

@@ -145,8 +145,8 @@ using controller::Rung;
 // - Derived: kLedBackSpeed (twice the pace of tracking::way_back), kAcross (its course of 45°),
 //   kTrialSpeed, kCreep (ResetWatch's speed of a standing car), kLongestRound (2π times udacity's radius of
 //   6.4 m at kCreep), kLongestAskPause (ResetWatch::kLongest).
-// - Chosen, docs/guard.md: kCreepDrive, kLongestCreep, kKeptShare, kCreepNearer (eq. 6c), kSeenTurn,
-//   kLeastTurned.
+// - Chosen, docs/guard.md: kCreepDrive, kLongestCreep, kCreepNearer, kCreepStop, kArcDoubt (eq. 6c),
+//   kSeenTurn, kLeastTurned.
 // - Chosen, docs/safety.md: kLost, kAlong, kReleaseTime, kStillTime, kTrialWay, kTrialRoom, kMostAside,
 //   kNoAnswerTime.
 // - Chosen: kChord, kAlongWaypoints (waypoints 10 m apart in a bend of 18 m); for what their lines say:
@@ -173,8 +173,9 @@ constexpr double kCreepDrive = 2.5;        // [1/s] of its drive: turned wheels 
 constexpr double kCreepStep = 0.2;         // [s] of creeping that are simulated at once
 constexpr double kLongestCreep = 6.0;      // [s]
 constexpr double kLongestRound = 40.0;     // [s] a turn at full lock
-constexpr double kKeptShare = 0.25;        // of the margin that creeping leaves at least
-constexpr double kCreepNearer = 5e-3;      // [m] by which a car that has less may come nearer
+constexpr double kCreepStop = 0.3;         // [s] in which a creeping car stops
+constexpr double kArcDoubt = 0.1;          // [m] by which an arc may be predicted too near the edge
+constexpr double kCreepNearer = 5e-3;      // [m] by which a car may come nearer to the edge, or over it
 constexpr double kSeenTurn = 0.06;         // [rad] of turning after which a car that is led is judged by it
 constexpr double kLeastTurned = 0.5;       // share of it that shows that the wheels answer
 constexpr double kTurnedWheels = 0.1;      // share of full lock that wheels may lack
@@ -190,22 +191,25 @@ model::Command creep(double steer, double vx, const model::VehicleParams& car) n
   return {steer, throttle_for(car, kCreepDrive * std::max(kCreep - vx, 0.0), vx)};
 }
 
-/// The least distance to the edge of a car that creeps from `at` on with its wheels turned, until it is along
-/// the road or as far from the edge as before (docs/guard.md, eq. 6c). It comes to rest on this arc wherever
-/// it is stopped. `goes_round`: it turns the long way, and has to get there.
-double creeping_edge(const StopPlanner& planner, const road::KnownRoad& road, StopStart at, double steer,
-                     const model::VehicleParams& car, bool goes_round = false) noexcept {
+/// Whether a car that creeps from `at` on with its wheels turned stays inside the edges until it is along the
+/// road or as far from the edge as before (docs/guard.md, eq. 6c). It comes to rest on this arc wherever it
+/// is stopped; the arc beyond a stop after `hold` [s] is judged again. `goes_round`: the long way to the end.
+bool creeps_inside(const StopPlanner& planner, const road::KnownRoad& road, StopStart at, double steer,
+                   const model::VehicleParams& car, double hold, bool goes_round = false) noexcept {
   at.body.steer = steer;
   const double edge = planner.edge(road, at);
+  const double stops = at.time + hold + kCreepStop;
   const double ends = at.time + (goes_round ? kLongestRound : kLongestCreep);
   const double off = std::copysign(1.0, steer) * angle_difference(at.e, 0.0);
-  double least = edge, to_turn = off < 0.0 ? -off : goes_round ? kTwoPi - off : 0.0;
+  double least = edge, later = edge, to_turn = off < 0.0 ? -off : goes_round ? kTwoPi - off : 0.0;
   do {
     const double before = at.e;
-    at = planner.advance(road, at, creep(steer, at.body.vx, car), kCreepStep, least);
+    double& nearest = at.time < stops ? least : later;
+    at = planner.advance(road, at, creep(steer, at.body.vx, car), kCreepStep, nearest);
     to_turn -= std::copysign(1.0, steer) * angle_difference(at.e, before);
   } while (at.time < ends && to_turn > 0.0 && (goes_round || !(planner.edge(road, at) > edge)));
-  return goes_round && to_turn > 0.0 ? -kFarFromRoad : least;
+  const bool gets_there = !goes_round || to_turn <= 0.0;
+  return gets_there && std::min(least, later + kArcDoubt) > std::min(edge, kCreepNearer) - kCreepNearer;
 }
 
 }  // namespace
@@ -307,8 +311,7 @@ bool Guard::try_reset(const std::optional<StopStart>& start, const Cycle& cycle,
   if (!has_room && !has_stop) {
     const model::VehicleParams vehicle = led_vehicle();
     const double lock = std::copysign(vehicle.steer_limit, -start->e);
-    const double kept = std::min(edge, kKeptShare * options_.margin) - kCreepNearer;
-    if (!(creeping_edge(filter_.planner(), road_, *start, lock, vehicle) > kept)) {
+    if (!creeps_inside(filter_.planner(), road_, *start, lock, vehicle, cycle.longest)) {
       if (stands()) report_.reason = controller::GuardReason::kFacesEdge;
       return false;
     }
@@ -371,10 +374,8 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   led.is_on_road = led.start && edge >= 0.0;
   led.may_creep =
       led.is_on_road && (led.stands || (std::fabs(car.vx) < kStillCreeps * kCreep && !rolls_back));
-  // An arc that has begun counts to its end without a margin: the car may stray by millimetres from it.
   run_.creeps &= led.may_creep;
-  const double least = run_.creeps ? kCreepNearer : kKeptShare * options_.margin;
-  led.least_edge = std::min(edge, least) - kCreepNearer;
+  led.hold = cycle.longest;
   turn_beside_edge(led, result.command);
   // The wheels turn at standstill: driving meanwhile would use up the room to the edge.
   const bool has_turned =
@@ -399,7 +400,7 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
 }
 
 bool Guard::stays_on_road(const LedCar& led, double angle, bool goes_round) const noexcept {
-  return creeping_edge(filter_.planner(), road_, *led.start, angle, led.vehicle, goes_round) > led.least_edge;
+  return creeps_inside(filter_.planner(), road_, *led.start, angle, led.vehicle, led.hold, goes_round);
 }
 
 void Guard::turn_beside_edge(const LedCar& led, model::Command& command) noexcept {
