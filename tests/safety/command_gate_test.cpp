@@ -88,7 +88,7 @@ TEST(CommandGate, LimitsTheSteeringRateBothWays) {
 
 // f1tenth in full size: the wheel follows with 0.5 s. A limit of what is sent kept it from a third of its
 // rate.
-TEST(CommandGate, LimitsTheWheelsRateWhereSteeringIsSlow) {
+TEST(CommandGate, LimitsTheRateOfTheWheelBehindItsLag) {
   model::VehicleParams vehicle = road_car();
   vehicle.steer_lag = 0.5;
   vehicle.steer_rate_limit = 1.0;

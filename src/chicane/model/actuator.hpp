@@ -11,11 +11,10 @@
 
 namespace chicane::model {
 
-/// Time constant above which steering counts as slow [s], for a car in full size. The demand then runs far
-/// ahead of the wheel, and controller and gate limit the rate of the wheel. Below it they limit the rate of
-/// the demand, for which weights and limits of cars in full size were chosen
-/// (docs/decisions/0039-rates-of-slow-steering.md).
-inline constexpr double kSlowSteering = 0.3;
+/// Share of a difference that a first-order lag of time constant `lag` [s], 0: none, leaves after dt > 0 [s].
+[[nodiscard]] inline double left_by_lag(double lag, double dt) noexcept {
+  return lag > 0.0 ? exp(-dt / lag) : 0.0;
+}
 
 /// Actuator from demand to value: range, first-order lag, rate limit, in this order (docs/model.md, eq. 13).
 /// Exact for a demand that is held over the step while the rate does not bind.
@@ -28,7 +27,7 @@ struct Actuator {
   /// The value dt [s] later. Pre: dt >= 0, all finite.
   [[nodiscard]] double next(double value, double asked, double dt) const noexcept {
     const double target = std::clamp(asked, low, high);
-    const double share = lag > 0.0 ? 1.0 - exp(-dt / lag) : 1.0;
+    const double share = 1.0 - left_by_lag(lag, dt);
     const double change = std::clamp((target - value) * share, -rate * dt, rate * dt);
     return std::clamp(value + change, low, high);
   }

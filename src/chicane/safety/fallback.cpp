@@ -143,20 +143,12 @@ const model::Command* Fallback::planned(double time) const noexcept {
 
 namespace {
 
-bool is_slow(const model::VehicleParams& vehicle) noexcept {
-  return vehicle.steer_lag > model::kSlowSteering;
-}
+bool has_passed(double elapsed) noexcept { return std::isfinite(elapsed) && elapsed > 0.0; }
 
 }  // namespace
 
 double CommandGate::wheel_after(double elapsed) const noexcept {
-  if (!is_slow(vehicle_)) return last_.steer;
-  if (!(std::isfinite(elapsed) && elapsed > 0.0)) return wheel_;
-  const model::Actuator steering{.low = -vehicle_.steer_limit,
-                                 .high = vehicle_.steer_limit,
-                                 .lag = vehicle_.steer_lag,
-                                 .rate = vehicle_.steer_rate_limit};
-  return steering.next(wheel_, last_.steer, elapsed);
+  return last_.steer + model::left_by_lag(vehicle_.steer_lag, elapsed) * (wheel_ - last_.steer);
 }
 
 model::Command CommandGate::limited(const model::Command& asked, double elapsed) const noexcept {
@@ -167,10 +159,10 @@ model::Command CommandGate::limited(const model::Command& asked, double elapsed)
     command.throttle = -Fallback::kGentleBraking * vehicle_.brake_throttle_limit;
   command.steer = std::clamp(command.steer, -vehicle_.steer_limit, vehicle_.steer_limit);
   command.throttle = std::clamp(command.throttle, -1.0, 1.0);
-  if (!std::isfinite(elapsed) || !(elapsed > 0.0)) return command;
+  if (!has_passed(elapsed)) return command;
   const double wheel = wheel_after(elapsed);
-  const double share = is_slow(vehicle_) ? 1.0 - exp(-elapsed / vehicle_.steer_lag) : 1.0;
-  const double reach = vehicle_.steer_rate_limit * elapsed / share;
+  const double turned = 1.0 - model::left_by_lag(vehicle_.steer_lag, elapsed);
+  const double reach = vehicle_.steer_rate_limit * elapsed / turned;
   command.steer = std::clamp(command.steer, wheel - reach, wheel + reach);
   return command;
 }
@@ -183,7 +175,7 @@ double drive_to_valid_speed(const model::VehicleParams& car, double v) noexcept 
 
 model::Command CommandGate::pass(const model::Command& asked, double elapsed) noexcept {
   const model::Command sent = limited(asked, elapsed);
-  wheel_ = wheel_after(elapsed);
+  wheel_ = has_passed(elapsed) ? wheel_after(elapsed) : sent.steer;
   return last_ = sent;
 }
 

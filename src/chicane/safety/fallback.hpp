@@ -88,10 +88,9 @@ class Fallback {
 [[nodiscard]] double drive_to_valid_speed(const model::VehicleParams& vehicle, double v) noexcept;
 
 /// The only way to an actuator: whatever is asked, what leaves is finite, inside the vehicle's steering and
-/// throttle range, and no faster than its steering rate allows: that of what is sent or, where the steering
-/// is slow (model/actuator.hpp), that of the wheel behind its lag. Non-finite parts are replaced by the last
-/// sent steering and gentle braking. A nominal command passes unchanged, bit for bit. No allocation; one
-/// thread.
+/// throttle range, and turns the wheel behind its lag no faster than its steering rate allows. Non-finite
+/// parts are replaced by the last sent steering and gentle braking. A nominal command passes unchanged, bit
+/// for bit. No allocation; one thread.
 class CommandGate {
  public:
   explicit CommandGate(const model::VehicleParams& vehicle) noexcept : vehicle_{vehicle} {}
@@ -104,12 +103,12 @@ class CommandGate {
   void set_vehicle(const model::VehicleParams& vehicle) noexcept { vehicle_ = vehicle; }
 
  private:
-  /// Where the wheel is `elapsed` [s] after the last command; that command, where the steering is not slow.
+  /// Where the wheel is `elapsed` > 0 [s] after the last command.
   [[nodiscard]] double wheel_after(double elapsed) const noexcept;
 
   model::VehicleParams vehicle_;
   model::Command last_;
-  double wheel_ = 0.0;  ///< where it was when last_ was sent [rad]
+  double wheel_ = 0.0;  ///< where it was when last_ was sent [rad]; without a time, where last_ turns it
 };
 
 }  // namespace chicane::safety

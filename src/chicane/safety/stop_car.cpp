@@ -4,26 +4,22 @@
 #include <cstddef>
 
 #include "chicane/base/math.hpp"
+#include "chicane/model/actuator.hpp"
 
 namespace chicane::safety {
 namespace {
 
 // Origins (chosen: by trial, see Guard):
 // - Derived: kLoadLag (bmw-320i's; other plants have 9 to 80 ms), kLocks (the plant's:
-//   sim/double_track.hpp), kMostAlong (a planned lap uses no more, docs/racing.md), kLeastSquare,
-//   kShortestLag (divisors above 0).
+//   sim/double_track.hpp), kMostAlong (a planned lap uses no more, docs/racing.md), kLeastSquare (a
+//   divisor above 0).
 // - Chosen: kRelaxation (docs/guard.md, eq. 3a), kLeastLoad (a wheel that is nearly in the air).
 constexpr double kLoadLag = 0.06;          // [s] of the loads behind the accelerations: springs and dampers
 constexpr double kLeastLoad = 0.05;        // share of a wheel's load at rest
 constexpr double kMostAlong = 0.95;        // share of a tyre's peak, for a wheel that does not lock
 constexpr double kLocks[] = {0.10, 0.18};  // slips between which anti-lock takes the torque away
 constexpr double kLeastSquare = 1e-8;      // of a slip: the curve's secant has a kink at 0
-constexpr double kShortestLag = 1e-4;      // [s]
 constexpr double kRelaxation = 0.4;  // [m] rolled while a tyre's slip angle follows: about a wheel's radius
-
-double left_of(double time_constant, double dt) noexcept {
-  return time_constant > kShortestLag ? exp(-dt / time_constant) : 0.0;
-}
 
 }  // namespace
 
@@ -111,7 +107,8 @@ std::array<double, 2> StopCar::slips(const model::BodyMotion<double>& m) const n
 StopCar::Step StopCar::step(double dt) const noexcept {
   const model::VehicleParams& p = vehicle();
   const auto left = [&](double h) {
-    return Left{left_of(kLoadLag, h), left_of(p.steer_lag, h), left_of(p.drive_lag, h)};
+    return Left{model::left_by_lag(kLoadLag, h), model::left_by_lag(p.steer_lag, h),
+                model::left_by_lag(p.drive_lag, h)};
   };
   return {dt, model_.lags(dt), left(0.5 * dt), left(dt)};
 }

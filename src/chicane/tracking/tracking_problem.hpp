@@ -70,14 +70,12 @@ struct TrackingProblem {
   struct Step {
     double length = 0.05;               ///< duration [s]
     model::PredictionModel::Lags lags;  ///< lags of steering and drive over the stage
-    /// Share of the difference between commanded and present wheel angle that the wheel turns in the stage: 1
-    /// for fast steering, whose demand is what the weights limit (model::kSlowSteering).
+    /// Share of the difference between commanded and present wheel angle that the wheel turns in the stage.
     double steer_share = 1.0;
 
     [[nodiscard]] static Step of(const model::PredictionModel& model, double length) noexcept {
       const model::PredictionModel::Lags lags = model.lags(length);
-      const bool is_slow = model.vehicle().steer_lag > model::kSlowSteering;
-      return {length, lags, is_slow ? 1.0 - lags.steer.end : 1.0};
+      return {length, lags, 1.0 - lags.steer.end};
     }
     /// Mean rate of the wheel over the stage for a unit difference between command and wheel [1/s].
     [[nodiscard]] double steer_speed() const noexcept { return steer_share / length; }
