@@ -4,7 +4,7 @@
 // it for each problem, with
 //
 //   -DEXPORTED='"problem.hpp"'     its header, with a struct Problem
-//   -DWRITTEN                      cart-pole: bench/families/cart_pole.hpp as well
+//   -DWRITTEN                      cart-pole: bench's CartPole as well
 //
 // Reads the state at the start, then parameters row by row. Writes one line of JSON.
 #include <cstdio>
@@ -12,8 +12,7 @@
 #include <vector>
 
 #include EXPORTED
-#include "families/cart_pole.hpp"
-#include "families/kkt.hpp"
+#include "families/pendulums.hpp"
 #include "problems/ipopt_problem.hpp"
 
 namespace {
@@ -61,8 +60,7 @@ int main() {
   const auto warm = std::make_unique<Timed<Problem>>();
   Plan guess{.horizon = kHorizon};
   solver::roll_out(problem, x0, guess);
-  const bench::OverArrays<Problem> arrays{problem};
-  bench::IpoptSolver<bench::OverArrays<Problem>> ipopt;
+  bench::IpoptSolver<Problem, kHorizon> ipopt;
   bench::Outcome reference;
   double ipopt_least = 1e30, ipopt_cost = 0.0;
 #if defined(WRITTEN)
@@ -76,10 +74,9 @@ int main() {
 #endif
     warm->solve(problem, x0, own->last);
     Plan plan = guess;
-    reference = ipopt.solve(arrays, x0, plan);
+    reference = ipopt.solve(problem, x0, plan);
     ipopt_least = std::min(ipopt_least, reference.time);
-    const auto zero = [](int, int) { return 0.0; };
-    ipopt_cost = bench::check_kkt(arrays, plan, zero).cost;
+    ipopt_cost = bench::check_kkt(problem, plan).cost;
   }
   std::printf("{\"own_s\": %.9g, \"own_cost\": %.12g, \"status\": %d, \"warm_s\": %.9g, ", own->least,
               own->cost, own->status, warm->least);

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <concepts>
 #include <cstddef>
+#include <functional>
 #include <string_view>
 #include <tuple>
 
@@ -16,13 +19,43 @@
 
 namespace chicane::bench {
 
-/// One optimal control problem of a family that is no car: what a solve needs, made from a seed.
-template <class P>
-struct FamilyInstance {
-  P problem;
-  std::array<double, P::kNx> start{};  ///< x_0
-  std::array<double, P::kNx> goal{};   ///< where a naive guess of the states goes in a straight line
-  std::array<double, P::kNu> idle{};   ///< the trivial input: none, or what hovers
+/// An array of numbers of one type: values, jets or dual numbers.
+template <class A>
+concept Numbers = requires {
+  requires std::same_as<A, std::array<typename A::value_type, std::tuple_size_v<A>>>;
+};
+
+/// One optimal control problem of a family that is no car: what a solve needs. A family draws its instances
+/// with `draw(random)`; one with instances that leave no solution has `draw(random, is_impossible)`.
+template <int Nx, int Nu>
+struct FamilyProblem {
+  static constexpr int kNx = Nx, kNu = Nu;
+  std::array<double, Nx> start{};  ///< x_0
+  std::array<double, Nx> goal{};   ///< where a naive guess of the states goes in a straight line
+  std::array<double, Nu> idle{};   ///< the trivial input: none, or what hovers
+  std::array<double, Nu> most{};   ///< bounds of the inputs, in both directions
+
+  [[nodiscard]] std::array<double, Nu> input_upper(int) const { return most; }
+  [[nodiscard]] std::array<double, Nu> input_lower(int) const {
+    std::array<double, Nu> least;
+    std::transform(most.begin(), most.end(), least.begin(), std::negate<>{});
+    return least;
+  }
+
+  /// No cost at the end.
+  template <Numbers X>
+  auto terminal_residual(const X&) const {
+    return std::array<typename X::value_type, 0>{};
+  }
+};
+
+/// All constraints must hold; their first penalty is this.
+template <int Penalty>
+struct AllHard {
+  [[nodiscard]] bool is_hard(int) const { return true; }
+  [[nodiscard]] solver::SoftPenalty soft_penalty(int) const {
+    return {.linear = Penalty, .quadratic = Penalty};
+  }
 };
 
 /// One step of Runge and Kutta's classical method for x' = rate(x), of any scalar.

@@ -1,35 +1,20 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "families/arm.hpp"
-#include "families/cart_pole.hpp"
-#include "families/parking.hpp"
-#include "families/planar_quadrotor.hpp"
-#include "families/rocket_landing.hpp"
+#include "families/flights.hpp"
+#include "families/machines.hpp"
+#include "families/pendulums.hpp"
 
 namespace chicane::bench {
 
 // Families with something that must hold: goals that are reached exactly, limits without a penalty, a path
 // that is kept, a time that is free, a motion that repeats itself.
 
-namespace detail {
-/// An instance of another problem with the same data.
-template <class Hard, class Soft>
-FamilyInstance<Hard> with_same_data(const FamilyInstance<Soft>& from) {
-  FamilyInstance<Hard> instance{.problem = {}, .start = from.start, .goal = from.goal, .idle = from.idle};
-  static_cast<Soft&>(instance.problem) = from.problem;
-  return instance;
-}
-}  // namespace detail
-
 /// A family whose end is met and whose limits hold exactly; terminal_equality() says what its end is.
 template <class Soft>
 struct Exactly : Soft {
   static constexpr int kNe = 0;
-  template <class X>
-  CHICANE_INLINE auto terminal_residual(const X&) const {
-    return std::make_tuple();
-  }
+  CHICANE_INLINE auto terminal_residual(const auto&) const { return std::make_tuple(); }
   [[nodiscard]] bool is_hard(int) const { return true; }
 };
 
@@ -37,13 +22,9 @@ struct Exactly : Soft {
 struct HardCartPole : Exactly<CartPole> {
   static constexpr std::string_view kName = "cart-pole swing-up, exactly";
   static constexpr int kNeh = 4;
-  template <class X>
-  CHICANE_INLINE auto terminal_equality(const X& x) const {
+  CHICANE_INLINE auto terminal_equality(const auto& x) const {
     const auto& [position, angle, speed, rate] = x;
     return std::make_tuple(position, angle - kPi, speed, rate);
-  }
-  static FamilyInstance<HardCartPole> make(Random& random) {
-    return detail::with_same_data<HardCartPole>(CartPole::make(random));
   }
 };
 
@@ -51,13 +32,9 @@ struct HardCartPole : Exactly<CartPole> {
 struct HardRocketLanding : Exactly<RocketLanding> {
   static constexpr std::string_view kName = "rocket landing, exactly";
   static constexpr int kNeh = 6;
-  template <class X>
-  CHICANE_INLINE auto terminal_equality(const X& x) const {
+  CHICANE_INLINE auto terminal_equality(const auto& x) const {
     const auto& [px, pz, vx, vz, pitch, rate, mass] = x;
     return std::make_tuple(px, pz, vx, vz, pitch, rate);
-  }
-  static FamilyInstance<HardRocketLanding> make(Random& random) {
-    return detail::with_same_data<HardRocketLanding>(RocketLanding::make(random));
   }
 };
 
@@ -65,13 +42,9 @@ struct HardRocketLanding : Exactly<RocketLanding> {
 struct HardPlanarQuadrotor : Exactly<PlanarQuadrotor> {
   static constexpr std::string_view kName = "planar quadrotor, exactly";
   static constexpr int kNeh = 6;
-  template <class X>
-  CHICANE_INLINE auto terminal_equality(const X& x) const {
+  CHICANE_INLINE auto terminal_equality(const auto& x) const {
     const auto& [px, pz, pitch, vx, vz, rate] = x;
-    return std::make_tuple(px - goal_x, pz - goal_z, pitch, vx, vz, rate);
-  }
-  static FamilyInstance<HardPlanarQuadrotor> make(Random& random) {
-    return detail::with_same_data<HardPlanarQuadrotor>(PlanarQuadrotor::make(random));
+    return std::make_tuple(px - goal[0], pz - goal[1], pitch, vx, vz, rate);
   }
 };
 
@@ -79,17 +52,12 @@ struct HardPlanarQuadrotor : Exactly<PlanarQuadrotor> {
 struct HardParking : Exactly<Parking> {
   static constexpr std::string_view kName = "parking, exactly";
   static constexpr int kNeh = 4, kNec = 2;
-  template <class X>
-  CHICANE_INLINE auto terminal_equality(const X& x) const {
+  CHICANE_INLINE auto terminal_equality(const auto& x) const {
     const auto& [px, py, heading, speed, steering] = x;
     return std::make_tuple(px, py, heading, speed);
   }
-  template <class X>
-  CHICANE_INLINE auto terminal_constraint(const X& x) const {
+  CHICANE_INLINE auto terminal_constraint(const auto& x) const {
     return std::make_tuple(std::get<4>(x) - 0.05, -0.05 - std::get<4>(x));
-  }
-  static FamilyInstance<HardParking> make(Random& random) {
-    return detail::with_same_data<HardParking>(Parking::make(random));
   }
 };
 
@@ -101,43 +69,35 @@ struct ArmOnALine : Arm {
   std::array<double, 2> from{}, across{};
   solver::StageData<kHorizon> is_on;  ///< 0: the first stage is given, else 1
 
-  template <class T>
-  std::array<T, 0> terminal_residual(const std::array<T, 4>&) const {
-    return {};
-  }
-  template <class K, class T>
-  std::array<T, 1> equality(K k, const std::array<T, 4>& x, const std::array<T, 2>&) const {
+  auto terminal_residual(const Numbers auto& x) const { return FamilyProblem::terminal_residual(x); }
+  auto equality(auto k, const Numbers auto& x, const Numbers auto&) const {
     const auto at = hand(x, 1.0);
-    return {is_on.at(k) * (across[0] * (at[0] - from[0]) + across[1] * (at[1] - from[1]))};
+    return std::array{is_on.at(k) * (across[0] * (at[0] - from[0]) + across[1] * (at[1] - from[1]))};
   }
-  template <class T>
-  std::array<T, 4> terminal_equality(const std::array<T, 4>& x) const {
+  auto terminal_equality(const Numbers auto& x) const {
     const auto at = hand(x, 1.0);
-    return {at[0] - target[0], at[1] - target[1], x[2], x[3]};
+    return std::array{at[0] - target[0], at[1] - target[1], x[2], x[3]};
   }
-  static FamilyInstance<ArmOnALine> make(Random& random) {
-    auto instance = detail::with_same_data<ArmOnALine>(Arm::make(random));
-    ArmOnALine& p = instance.problem;
-    p.from = p.hand<double>(instance.start, 1.0);
-    const double dx = p.target[0] - p.from[0], dy = p.target[1] - p.from[1], way = hypot(dx, dy);
-    p.across = {-dy / way, dx / way};
-    for (std::size_t k = 1; k < kHorizon; ++k) p.is_on[k] = 1.0;
-    return instance;
+  void draw(Random& random) {
+    Arm::draw(random);
+    from = hand(start, 1.0);
+    const double dx = target[0] - from[0], dy = target[1] - from[1], way = hypot(dx, dy);
+    across = {-dy / way, dx / way};
+    for (std::size_t k = 1; k < kHorizon; ++k) is_on[k] = 1.0;
   }
 };
 
 /// A crane brings its load to a point in the shortest time, without more swing than 0.2 rad. The duration is
 /// a state, which an input of the first stage sets. States: trolley [m], swing [rad], their rates, duration
 /// [s]; inputs: acceleration [m/s²], duration [s].
-struct CraneInLeastTime {
+struct CraneInLeastTime : FamilyProblem<5, 2>, AllHard<10> {
   static constexpr std::string_view kName = "crane in least time";
-  static constexpr int kNx = 5, kNu = 2, kNr = 2, kNe = 1, kNc = 2, kNeh = 4, kHorizon = 50;
+  static constexpr int kNr = 2, kNe = 1, kNc = 2, kNeh = 4, kHorizon = 50;
   static constexpr double kGravity = 9.81, kSwing = 0.2;
   static constexpr bool kRecedes = false;  ///< a duration cannot be set twice
-  double goal = 4.0, rope = 2.0, most = 2.0;
+  double rope = 2.0, push_limit = 2.0;
 
-  template <class K, class X, class U>
-  CHICANE_INLINE auto dynamics(K, const X& x, const U& u) const {
+  CHICANE_INLINE auto dynamics(auto, const auto& x, const auto& u) const {
     const auto& [trolley, swing, speed, rate, duration] = x;
     const auto& [push, set] = u;
     const auto total = duration + set;
@@ -146,93 +106,71 @@ struct CraneInLeastTime {
     const auto w = rate - step * ((push * cos(swing) + kGravity * sin(swing)) * (1.0 / rope));
     return std::make_tuple(trolley + step * v, swing + step * w, v, w, total);
   }
-  template <class K, class X, class U>
-  CHICANE_INLINE auto residual(K, const X& x, const U& u) const {
+  CHICANE_INLINE auto residual(auto, const auto& x, const auto& u) const {
     return std::make_tuple(0.01 * std::get<0>(u), 0.01 * std::get<3>(x));
   }
-  template <class X>
-  CHICANE_INLINE auto terminal_residual(const X& x) const {
-    return std::make_tuple(1.0 * std::get<4>(x));
-  }
-  template <class X>
-  CHICANE_INLINE auto terminal_equality(const X& x) const {
+  CHICANE_INLINE auto terminal_residual(const auto& x) const { return std::make_tuple(1.0 * std::get<4>(x)); }
+  CHICANE_INLINE auto terminal_equality(const auto& x) const {
     const auto& [trolley, swing, speed, rate, duration] = x;
-    return std::make_tuple(trolley - goal, swing, speed, rate);
+    return std::make_tuple(trolley - goal[0], swing, speed, rate);
   }
-  template <class K, class X, class U>
-  CHICANE_INLINE auto constraint(K, const X& x, const U&) const {
+  CHICANE_INLINE auto constraint(auto, const auto& x, const auto&) const {
     return std::make_tuple(std::get<1>(x) - kSwing, -kSwing - std::get<1>(x));
   }
-  [[nodiscard]] bool is_hard(int) const { return true; }
-  [[nodiscard]] solver::SoftPenalty soft_penalty(int) const { return {.linear = 10.0, .quadratic = 10.0}; }
-  [[nodiscard]] std::array<double, 2> input_lower(int k) const { return {-most, k == 0 ? 1.0 : 0.0}; }
-  [[nodiscard]] std::array<double, 2> input_upper(int k) const { return {most, k == 0 ? 20.0 : 0.0}; }
+  [[nodiscard]] std::array<double, 2> input_lower(int k) const { return {-push_limit, k == 0 ? 1.0 : 0.0}; }
+  [[nodiscard]] std::array<double, 2> input_upper(int k) const { return {push_limit, k == 0 ? 20.0 : 0.0}; }
 
-  static FamilyInstance<CraneInLeastTime> make(Random& random) {
-    FamilyInstance<CraneInLeastTime> instance;
-    CraneInLeastTime& p = instance.problem;
-    p.goal = random.uniform(2.0, 8.0);
-    p.rope = random.uniform(1.0, 4.0);
-    p.most = random.uniform(1.0, 3.0);
-    instance.start = {0.0, random.uniform(-0.1, 0.1), random.uniform(-0.5, 0.5), random.uniform(-0.1, 0.1),
-                      0.0};
-    instance.goal = {p.goal, 0.0, 0.0, 0.0, 5.0};
-    instance.idle = {0.0, 5.0};
-    return instance;
+  void draw(Random& random) {
+    goal = {random.uniform(2.0, 8.0), 0.0, 0.0, 0.0, 5.0};
+    rope = random.uniform(1.0, 4.0);
+    push_limit = random.uniform(1.0, 3.0);
+    start = {0.0, random.uniform(-0.1, 0.1), random.uniform(-0.5, 0.5), random.uniform(-0.1, 0.1), 0.0};
+    idle = {0.0, 5.0};
   }
 };
 
 /// A damped pendulum is driven round a motion that repeats itself, near one that is asked for. Its first
 /// state is free: two inputs of the first stage set it, two states remember it. States: angle [rad], rate,
 /// and both at the start; inputs: torque, and what is added to both at the start.
-struct PeriodicPendulum {
+struct PeriodicPendulum : FamilyProblem<4, 3> {
   static constexpr std::string_view kName = "pendulum that repeats itself";
-  static constexpr int kNx = 4, kNu = 3, kNr = 2, kNe = 0, kNc = 0, kNeh = 2, kHorizon = 50;
+  static constexpr int kNr = 2, kNe = 0, kNc = 0, kNeh = 2, kHorizon = 50;
   static constexpr double kStep = 0.05;
   static constexpr bool kRecedes = false;  ///< a period is a period
-  double stiffness = 9.0, damping = 0.3, most = 6.0, effort = 0.1;
+  double stiffness = 9.0, damping = 0.3, strongest = 6.0, effort = 0.1;
   solver::StageData<kHorizon> wanted;
 
-  template <class K, class X, class U>
-  CHICANE_INLINE auto dynamics(K, const X& x, const U& u) const {
+  CHICANE_INLINE auto dynamics(auto, const auto& x, const auto& u) const {
     const auto& [angle, rate, first_angle, first_rate] = x;
     const auto& [torque, add_angle, add_rate] = u;
     const auto a = angle + add_angle, w = rate + add_rate;
     const auto next = w + kStep * (torque - stiffness * sin(a) - damping * w);
     return std::make_tuple(a + kStep * next, next, first_angle + add_angle, first_rate + add_rate);
   }
-  template <class K, class X, class U>
-  CHICANE_INLINE auto residual(K k, const X& x, const U& u) const {
+  CHICANE_INLINE auto residual(auto k, const auto& x, const auto& u) const {
     return std::make_tuple(std::get<0>(x) + std::get<1>(u) - wanted.at(k), effort * std::get<0>(u));
   }
-  template <class X>
-  CHICANE_INLINE auto terminal_residual(const X&) const {
-    return std::make_tuple();
-  }
-  template <class X>
-  CHICANE_INLINE auto terminal_equality(const X& x) const {
+  CHICANE_INLINE auto terminal_residual(const auto&) const { return std::make_tuple(); }
+  CHICANE_INLINE auto terminal_equality(const auto& x) const {
     const auto& [angle, rate, first_angle, first_rate] = x;
     return std::make_tuple(angle - first_angle, rate - first_rate);
   }
   [[nodiscard]] std::array<double, 3> input_lower(int k) const {
-    return {-most, k == 0 ? -3.0 : 0.0, k == 0 ? -10.0 : 0.0};
+    return {-strongest, k == 0 ? -3.0 : 0.0, k == 0 ? -10.0 : 0.0};
   }
   [[nodiscard]] std::array<double, 3> input_upper(int k) const {
-    return {most, k == 0 ? 3.0 : 0.0, k == 0 ? 10.0 : 0.0};
+    return {strongest, k == 0 ? 3.0 : 0.0, k == 0 ? 10.0 : 0.0};
   }
 
-  static FamilyInstance<PeriodicPendulum> make(Random& random) {
-    FamilyInstance<PeriodicPendulum> instance;
-    PeriodicPendulum& p = instance.problem;
-    p.stiffness = random.uniform(2.0, 15.0);
-    p.damping = random.uniform(0.05, 1.0);
-    p.most = random.uniform(2.0, 10.0);
+  void draw(Random& random) {
+    stiffness = random.uniform(2.0, 15.0);
+    damping = random.uniform(0.05, 1.0);
+    strongest = random.uniform(2.0, 10.0);
     const double size = random.uniform(0.5, 2.5), second = random.uniform(-0.5, 0.5);
     for (int k = 0; k < kHorizon; ++k) {
       const double phase = 2.0 * kPi * k / kHorizon;
-      p.wanted[static_cast<std::size_t>(k)] = size * (sin(phase) + second * sin(2.0 * phase));
+      wanted[static_cast<std::size_t>(k)] = size * (sin(phase) + second * sin(2.0 * phase));
     }
-    return instance;
   }
 };
 

@@ -4,19 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdio>
 #include <memory>
 #include <string>
-#include <string_view>
-#include <vector>
 
+#include "chicane/base/random.hpp"
 #include "chicane/solver/ocp_solver.hpp"
 #include "chicane/solver/warm_start.hpp"
-#include "families/family.hpp"
-#include "families/family_row.hpp"
-#include "families/kkt.hpp"
-#include "problems/cpu_time.hpp"
+#include "families/list.hpp"
 #if defined(CHICANE_HAVE_IPOPT)
 #include "problems/ipopt_problem.hpp"
 #endif
@@ -29,176 +23,205 @@ namespace chicane::bench {
 
 /// Whether a family has instances that leave no solution.
 template <class P>
-inline constexpr bool kHasImpossible = requires(Random& random) {
-  P::make_impossible(random);
+concept HasImpossible = requires(P p, Random& random) {
+  p.draw(random, true);
 };
 
+/// How the instances of a family are drawn, and solved by all.
 template <class P>
 class FamilyMeasurement {
  public:
   static constexpr int kHorizon = P::kHorizon;
+  using State = std::array<double, P::kNx>;
+  using Solver = solver::OcpSolver<P, kHorizon>;
   using Trajectory = solver::Trajectory<P::kNx, P::kNu, kHorizon>;
 
-  static FamilyInstance<P> instance(int seed, bool is_impossible = false) {
+  static P instance(int seed, bool is_impossible = false) {
     Random random{static_cast<std::uint64_t>(seed) * 7919U + 17U};
-    if constexpr (kHasImpossible<P>) {
-      if (is_impossible) return P::make_impossible(random);
+    P problem;
+    if constexpr (HasImpossible<P>) {
+      problem.draw(random, is_impossible);
+    } else {
+      problem.draw(random);
     }
-    return P::make(random);
+    return problem;
   }
   /// The guess that belongs to a start.
-  static Trajectory guess(const FamilyInstance<P>& instance, NaiveStart start) {
+  static Trajectory guess(const P& problem, NaiveStart start) {
     Trajectory t;
     t.horizon = kHorizon;
-    for (int k = 0; k < kHorizon; ++k) t.u[static_cast<std::size_t>(k)] = instance.idle;
-    solver::roll_out(instance.problem, instance.start, t);
-    if (start == NaiveStart::kIdle) return t;
-    for (int k = 0; k <= kHorizon; ++k) {
+    for (auto& u : t.u) u = problem.idle;
+    solver::roll_out(problem, problem.start, t);
+    for (int k = 0; k <= kHorizon && start == NaiveStart::kLine; ++k) {
       const double share = static_cast<double>(k) / kHorizon;
       for (std::size_t i = 0; i < P::kNx; ++i)
-        t.x[static_cast<std::size_t>(k)][i] =
-            instance.start[i] + share * (instance.goal[i] - instance.start[i]);
+        t.x[static_cast<std::size_t>(k)][i] = problem.start[i] + share * (problem.goal[i] - problem.start[i]);
     }
     return t;
   }
 
-  /// Where the multipliers of what must hold are.
-  template <class Solver>
-  static const auto& hard_multipliers(const Solver& ocp) {
-    static constexpr NoHardMultipliers kNone;
-    if constexpr (solver::HardProblem<P>) {
-      return ocp;
-    } else {
-      return kNone;
+  static FamilySolves solve(const FamilyRequest& request, NaiveStart start, References& references) {
+    const auto ocp = make_solver(request, start == NaiveStart::kLine);
+    FamilySolves all;
+    for (int seed = request.first; seed < request.first + request.instances; ++seed) {
+      const P problem = instance(seed, request.is_impossible);
+      const auto begin = std::make_unique<Trajectory>(guess(problem, start));
+      const auto t = std::make_unique<Trajectory>();
+      const auto multipliers = std::make_unique<Multipliers>();
+      FamilySolve& one =
+          all.emplace_back(solve_ours(*ocp, request, problem, problem.start, *begin, *t, *multipliers));
+      one.seed = seed;
+      const bool is_asked = !one.by[kOurs].is_solved || seed - request.first < request.ipopt_instances;
+      const std::string key = std::string(P::kName) + (request.is_impossible ? " impossible|" : "|") +
+                              std::string(to_string(start)) + "|" + std::to_string(seed);
+      if (const auto known = references.find(key); known != references.end()) {
+        one.by[kIpopt] = known->second;
+      } else if (kHasIpopt && request.with_ipopt && is_asked) {
+        one.by[kIpopt] = references[key] = ask_ipopt(problem, *begin);
+      }
+      if (request.with_peers) ask_peers(problem, *begin, one);
     }
+    return all;
   }
 
-  static FamilyRow measure(const FamilyRequest& request, NaiveStart start, References& references) {
-    using Solver = solver::OcpSolver<P, kHorizon>;
-    const auto ocp =
-        std::make_unique<Solver>(solver::SolverOptions{.tolerance = request.tolerance,
-                                                       .max_iterations = request.max_iterations,
-                                                       .start_from_states = start == NaiveStart::kLine});
-    FamilyRow row{.family = P::kName, .start = start, .instances = request.instances};
-    std::vector<double> times, iterations, ratios;
-    for (int i = request.first; i < request.first + request.instances; ++i) {
-      const FamilyInstance<P> one = instance(i, request.is_impossible);
-      const auto t = std::make_unique<Trajectory>();
-      solver::SolveReport report;
-      double time = 1e30;
-      for (int repeat = 0; repeat < 2; ++repeat) {
-        *t = guess(one, start);
-        const double begin = cpu_time();
-        report = ocp->solve(one.problem, one.start, *t);
-        time = std::min(time, cpu_time() - begin);
-      }
-      const OverArrays<P> arrays{one.problem};
-      const KktResidual kkt = check_kkt(
-          arrays, *t, [&](int k, int c) { return ocp->constraint_multiplier(k, c); }, hard_multipliers(*ocp));
-      const bool is_optimal = report.status == solver::SolveStatus::kOptimal;
-      const bool is_asked = !is_optimal || i - request.first < request.ipopt_instances;
-      const ReferenceAnswer reference = reference_of(request, references, one, arrays, start, i, is_asked);
-      times.push_back(time);
-      iterations.push_back(report.iterations);
-      row.optimal += is_optimal ? 1 : 0;
-      const bool is_at_floor = report.status == solver::SolveStatus::kAtFloor;
-      row.at_floor += is_at_floor ? 1 : 0;
-      const bool is_infeasible = report.status == solver::SolveStatus::kInfeasible;
-      row.infeasible += is_infeasible ? 1 : 0;
-      row.reference_infeasible += reference.is_impossible ? 1 : 0;
-      if (is_infeasible && reference.is_impossible) {
-        ++row.both_infeasible;
-        row.further += kkt.total > reference.cost * (1.0 + 1e-4) + 1e-6 ? 1 : 0;
-      }
-      row.usable += solver::usable(report.status) ? 1 : 0;
-      row.reference += reference.is_solved ? 1 : 0;
-      row.both += reference.is_solved && is_optimal ? 1 : 0;
-      const double worst = std::max({kkt.stationarity, kkt.defect, kkt.outside, kkt.miss});
-      const bool is_false = is_optimal && !(worst <= 1.5 * request.tolerance + kkt.rounding &&
-                                            kkt.subgradient <= 2.0 * std::sqrt(request.tolerance));
-      row.false_optimal += is_false ? 1 : 0;
-      if (is_optimal) row.worst_residual = std::max(row.worst_residual, worst);
-      if (is_at_floor) row.floor_residual = std::max(row.floor_residual, worst);
-      if (is_optimal && reference.is_solved) {
-        ratios.push_back(reference.time / time);
-        const double margin = 1e-2 * std::fabs(reference.cost) + 1e-6;
-        row.lower += kkt.cost < reference.cost - margin ? 1 : 0;
-        row.higher += kkt.cost > reference.cost + margin ? 1 : 0;
-      }
-      if (request.with_peers) {
-        auto& all = row.compared.emplace_back();
-        if (is_optimal) all[0] = {time, time, kkt.cost};
-        ask_peers(one, start, all);
-        if (reference.is_solved)
-          all[3] = {reference.time, reference.time - reference.time_in_functions, reference.cost};
-      }
-      if (request.each) {
-        std::printf(
-            "%s %s %d: %s iterations %d sweeps %d cost %.8g stat %.2e defect %.2e | check stat %.2e defect "
-            "%.2e "
-            "sub %.2e miss %.2e total %.6g | ipopt %s %.8g iterations %d%s\n",
-            P::kName.data(), to_string(start).data(), i, to_string(report.status).data(), report.iterations,
-            report.sweeps, kkt.cost, report.stationarity, report.defect, kkt.stationarity, kkt.defect,
-            kkt.subgradient, kkt.miss, kkt.total,
-            reference.is_solved ? "cost" : (reference.is_impossible ? "infeasible total" : "none"),
-            reference.cost, reference.iterations, is_false ? " FALSE" : "");
+  /// Cycles of a controller: the first input is driven, a little is added to the state, the answer is shifted
+  /// by a stage and solved again. Ipopt gets the same start in each cycle, once alone and once with its own
+  /// multipliers of the cycle before.
+  static FamilySolves drive(const FamilyRequest& request) {
+    constexpr int kCycles = 20;
+    constexpr double kDisturbance = 1e-3;
+    const auto first = make_solver(request, false), ocp = make_solver(request, true);
+    FamilySolves all;
+    for (int seed = request.first; seed < request.first + request.instances; ++seed) {
+      const P problem = instance(seed);
+      const OverArrays<P> arrays{problem};
+      Random random{static_cast<std::uint64_t>(seed) + 1000U};
+      State x = problem.start;
+      const auto begin = std::make_unique<Trajectory>(guess(problem, NaiveStart::kIdle));
+      const auto plan = std::make_unique<Trajectory>(*begin);
+      const auto multipliers = std::make_unique<Multipliers>();
+      FamilySolve one = solve_ours(*first, request, problem, x, *begin, *plan, *multipliers);
+      if (solver::usable(one.report.status)) start_ipopt(problem, *plan);
+      for (int cycle = 0; cycle < kCycles && solver::usable(one.report.status); ++cycle) {
+        const State next = arrays.template dynamics<double>(0, x, plan->u[0]);
+        for (std::size_t i = 0; i < x.size(); ++i)
+          x[i] = next[i] + kDisturbance * std::max(1.0, std::fabs(next[i])) * random.normal();
+        solver::shift(*plan, 1.0);
+        plan->x[0] = x;
+        multipliers->shift(1, kHorizon);
+        *begin = *plan;
+        one = solve_ours(*ocp, request, problem, x, *begin, *plan, *multipliers);
+        one.seed = seed;
+        follow_by_ipopt(problem, x, *begin, one);
+        all.push_back(one);
       }
     }
-    row.iterations = detail::at_share(iterations, 0.5);
-    row.time = detail::at_share(times, 0.5);
-    row.most_time = detail::at_share(times, 0.99);
-    row.ratio = detail::at_share(ratios, 0.5);
-    row.least_ratio = detail::at_share(ratios, 0.01);
-    return row;
+    return all;
   }
 
  private:
-  static void ask_peers([[maybe_unused]] const FamilyInstance<P>& one, [[maybe_unused]] NaiveStart start,
-                        [[maybe_unused]] std::array<SolveTime, kSolvers.size()>& all) {
-#if defined(CHICANE_HAVE_PEERS)
-    static HpipmSolver<P, kHorizon> hpipm;
-    static FatropSolver<P, kHorizon> fatrop;
-    const auto ask = [&](auto& solver, SolveTime& answer) {
-      for (int repeat = 0; repeat < 2; ++repeat) {
-        const auto t = std::make_unique<Trajectory>(guess(one, start));
-        const Outcome outcome = solver.solve(one.problem, one.start, *t);
-        if (!outcome.is_solved || outcome.time > answer.total) continue;
-        const KktResidual kkt = check_kkt(OverArrays<P>{one.problem}, *t, [](int, int) { return 0.0; });
-        answer = {outcome.time, outcome.time - outcome.time_in_functions, kkt.cost};
-      }
-    };
-    ask(hpipm, all[1]);
-    ask(fatrop, all[2]);
-#endif
+  using Multipliers = solver::HardMultipliers<P, kHorizon>;
+
+  static std::unique_ptr<Solver> make_solver(const FamilyRequest& request, bool starts_from_states) {
+    return std::make_unique<Solver>(solver::SolverOptions{.tolerance = request.tolerance,
+                                                          .max_iterations = request.max_iterations,
+                                                          .start_from_states = starts_from_states});
   }
-  static ReferenceAnswer reference_of([[maybe_unused]] const FamilyRequest& request, References& references,
-                                      [[maybe_unused]] const FamilyInstance<P>& one,
-                                      [[maybe_unused]] const OverArrays<P>& arrays, NaiveStart start,
-                                      int seed, [[maybe_unused]] bool is_asked) {
-    const std::string key = std::string(P::kName) + (request.is_impossible ? " impossible|" : "|") +
-                            std::string(to_string(start)) + "|" + std::to_string(seed);
-    if (const auto known = references.find(key); known != references.end()) return known->second;
+  /// The lesser of two measured times.
+  static FamilySolve solve_ours(Solver& ocp, const FamilyRequest& request, const P& problem, const State& x0,
+                                const Trajectory& begin, Trajectory& t, Multipliers& multipliers) {
+    FamilySolve one;
+    Outcome& ours = one.by[kOurs];
+    ours.time = 1e30;
+    const Multipliers known = multipliers;
+    for (int repeat = 0; repeat < 2; ++repeat) {
+      t = begin;
+      multipliers = known;
+      const double now = cpu_time();
+      if constexpr (solver::HardProblem<P>) {
+        one.report = ocp.solve(problem, x0, t, multipliers);
+      } else {
+        one.report = ocp.solve(problem, x0, t);
+      }
+      ours.time = std::min(ours.time, cpu_time() - now);
+    }
+    one.kkt = check_kkt(problem, t, ocp);
+    ours.is_solved = one.has(solver::SolveStatus::kOptimal);
+    ours.is_impossible = one.has(solver::SolveStatus::kInfeasible);
+    ours.iterations = one.report.iterations;
+    ours.cost = one.kkt.cost;
+    one.is_false = ours.is_solved && !(one.worst() <= 1.5 * request.tolerance + one.kkt.rounding &&
+                                       one.kkt.subgradient <= 2.0 * std::sqrt(request.tolerance));
+    return one;
+  }
+
 #if defined(CHICANE_HAVE_IPOPT)
-    if (!request.with_ipopt || !is_asked) return {};
-    static IpoptSolver<OverArrays<P>> ipopt;
-    const auto t = std::make_unique<Trajectory>(guess(one, start));
-    const Outcome report = ipopt.solve(arrays, one.start, *t);
-    if (report.is_impossible) {
+  static constexpr bool kHasIpopt = true;
+  static auto& ipopt() {
+    static IpoptSolver<P, kHorizon> solver;
+    return solver;
+  }
+  static Outcome ask_ipopt(const P& problem, const Trajectory& begin) {
+    const auto t = std::make_unique<Trajectory>(begin);
+    Outcome outcome = ipopt().solve(problem, problem.start, *t);
+    if (outcome.is_impossible) {
       for (int k = 0; k < kHorizon; ++k) {
-        const auto low = one.problem.input_lower(k), high = one.problem.input_upper(k);
+        const auto low = problem.input_lower(k), high = problem.input_upper(k);
         auto& u = t->u[static_cast<std::size_t>(k)];
         for (std::size_t m = 0; m < u.size(); ++m) u[m] = std::clamp(u[m], low[m], high[m]);
       }
-      solver::roll_out(one.problem, one.start, *t);
+      solver::roll_out(problem, problem.start, *t);
     }
-    const KktResidual kkt = check_kkt(arrays, *t, [](int, int) { return 0.0; });
-    return references[key] = {
-               report.is_solved, report.is_impossible, report.is_impossible ? kkt.total : kkt.cost,
-               report.time,      report.iterations,    report.time_in_functions};
-#else
-    return {};
-#endif
+    const KktResidual kkt = check_kkt(problem, *t);
+    outcome.cost = outcome.is_impossible ? kkt.total : kkt.cost;
+    return outcome;
   }
+  static void start_ipopt(const P& problem, Trajectory t) { ipopt().solve(problem, problem.start, t); }
+  static void follow_by_ipopt(const P& problem, const State& x0, const Trajectory& begin, FamilySolve& one) {
+    const auto t = std::make_unique<Trajectory>(begin);
+    ipopt().remember();
+    one.by[kHotIpopt] = ipopt().solve_warm(problem, x0, *t);
+    *t = begin;
+    one.by[kIpopt] = ipopt().solve(problem, x0, *t);
+    one.by[kIpopt].cost = check_kkt(problem, *t).cost;
+  }
+#else
+  static constexpr bool kHasIpopt = false;
+  static Outcome ask_ipopt(const P&, const Trajectory&) { return {}; }
+  static void start_ipopt(const P&, const Trajectory&) {}
+  static void follow_by_ipopt(const P&, const State&, const Trajectory&, FamilySolve&) {}
+#endif
+#if defined(CHICANE_HAVE_PEERS)
+  static void ask_peers(const P& problem, const Trajectory& begin, FamilySolve& one) {
+    static HpipmSolver<P, kHorizon> hpipm;
+    static FatropSolver<P, kHorizon> fatrop;
+    const auto ask = [&](auto& solver, Outcome& answer) {
+      for (int repeat = 0; repeat < 2; ++repeat) {
+        const auto t = std::make_unique<Trajectory>(begin);
+        Outcome outcome = solver.solve(problem, problem.start, *t);
+        if (!outcome.is_solved || (answer.is_solved && outcome.time > answer.time)) continue;
+        outcome.cost = check_kkt(problem, *t).cost;
+        answer = outcome;
+      }
+    };
+    ask(hpipm, one.by[kHpipm]);
+    ask(fatrop, one.by[kFatrop]);
+  }
+#else
+  static void ask_peers(const P&, const Trajectory&, FamilySolve&) {}
+#endif
 };
+
+/// A family as the table of all has it. Closed loops leave out families whose first stage is another than
+/// those that follow.
+template <class P>
+[[nodiscard]] Family family_of() {
+  using Measurement = FamilyMeasurement<P>;
+  if constexpr (requires { requires !P::kRecedes; }) {
+    return {P::kName, &Measurement::solve, nullptr, HasImpossible<P>};
+  } else {
+    return {P::kName, &Measurement::solve, &Measurement::drive, HasImpossible<P>};
+  }
+}
 
 }  // namespace chicane::bench

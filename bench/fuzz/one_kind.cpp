@@ -8,7 +8,6 @@
 
 #include "fuzz/classify.hpp"
 #include "fuzz/list.hpp"
-#include "fuzz/random_case.hpp"
 #include "fuzz/random_problem.hpp"
 #include "problems/cpu_time.hpp"
 

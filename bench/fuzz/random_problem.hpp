@@ -6,12 +6,12 @@
 #include <cstddef>
 #include <limits>
 #include <tuple>
-#include <type_traits>
 #include <utility>
 
 #include "chicane/base/random.hpp"
 #include "chicane/solver/hard_constraints.hpp"
 #include "chicane/solver/problem.hpp"
+#include "problems/optimality.hpp"
 
 namespace chicane::bench {
 
@@ -41,8 +41,8 @@ struct RandomData {
   [[nodiscard]] std::array<double, Nu> input_upper(int) const { return high; }
 
   /// Next value of state i of an array or a tuple; T: what it may be assigned to.
-  template <std::size_t I, class X, class U>
-  auto next(const X& x, const U& u) const {
+  template <std::size_t I>
+  auto next(const auto& x, const auto& u) const {
     constexpr std::size_t kOther = (I + 1) % Nx;
     const auto& own = std::get<I>(x);
     const auto& other = std::get<kOther>(x);
@@ -59,13 +59,13 @@ struct RandomData {
       return smooth;
     }
   }
-  template <std::size_t C, class X, class U>
-  auto limit(const X& x, const U& u) const {
+  template <std::size_t C>
+  auto limit(const auto& x, const auto& u) const {
     return std::get<C % Nx>(x) - edge[C] + slope[C] * std::get<C % Nu>(u) +
            quirks.product * std::get<0>(x) * std::get<0>(x);
   }
-  template <std::size_t R, class X, class U>
-  auto cost(const X& x, const U& u) const {
+  template <std::size_t R>
+  auto cost(const auto& x, const auto& u) const {
     if constexpr (R < Nx) {
       return weight[R] * (std::get<R>(x) - goal[R]);
     } else if constexpr (R < Nx + Nu) {
@@ -132,55 +132,29 @@ struct RandomStructured : RandomData<Nx, Nu, Nc> {
     }
     (std::make_index_sequence<static_cast<std::size_t>(Count)>{});
   }
-  template <class K, class X, class U>
-  auto dynamics(K, const X& x, const U& u) const {
+  auto dynamics(auto, const auto& x, const auto& u) const {
     return row<Nx>([&](auto i) { return this->template next<i>(x, u); });
   }
-  template <class K, class X, class U>
-  auto residual(K, const X& x, const U& u) const {
+  auto residual(auto, const auto& x, const auto& u) const {
     return row<Data::kNr>([&](auto r) { return this->template cost<r>(x, u); });
   }
-  template <class X>
-  auto terminal_residual(const X& x) const {
+  auto terminal_residual(const auto& x) const {
     return row<Nx>([&](auto i) { return this->end[i] * (std::get<i>(x) - this->goal[i]); });
   }
-  template <class K, class X, class U>
-  auto constraint(K, const X& x, const U& u) const {
+  auto constraint(auto, const auto& x, const auto& u) const {
     return row<Nc>([&](auto c) { return this->template limit<c>(x, u); });
   }
 };
 
-/// Over arrays of one scalar type; one stage at a time where it branches.
-template <int Nx, int Nu, int Nc, bool Branches>
-struct RandomPlain : RandomStructured<Nx, Nu, Nc> {
-  using Base = RandomStructured<Nx, Nu, Nc>;
-  using Data = RandomData<Nx, Nu, Nc>;
+/// Over arrays of one scalar type, one stage at a time: it branches.
+template <class Base>
+struct Branching : OverArrays<Base> {
   template <class T>
-  using X = std::array<T, Nx>;
-  template <class T>
-  using U = std::array<T, Nu>;
-  template <class K>
-  static constexpr bool kTakes = !Branches || std::is_same_v<K, int>;
-
-  template <class K, class T>
-  requires kTakes<K> X<T> dynamics(K k, const X<T>& x, const U<T>& u)
-  const {
-    X<T> next = solver::to_array<T>(Base::dynamics(k, x, u));
-    if constexpr (Branches) {
-      if (x[0] > 3.0) next[0] = next[0] + 0.1 * this->quirks.jump;
-    }
+  auto dynamics(int k, const std::array<T, Base::kNx>& x, const std::array<T, Base::kNu>& u) const {
+    auto next = OverArrays<Base>::dynamics(k, x, u);
+    if (x[0] > 3.0) next[0] = next[0] + 0.1 * this->quirks.jump;
     return next;
   }
-  template <class K, class T>
-  requires kTakes<K> std::array<T, Data::kNr> residual(K k, const X<T>& x, const U<T>& u)
-  const { return solver::to_array<T>(Base::residual(k, x, u)); }
-  template <class T>
-  X<T> terminal_residual(const X<T>& x) const {
-    return solver::to_array<T>(Base::terminal_residual(x));
-  }
-  template <class K, class T>
-  requires kTakes<K> std::array<T, Nc> constraint(K k, const X<T>& x, const U<T>& u)
-  const { return solver::to_array<T>(Base::constraint(k, x, u)); }
 };
 
 /// What must hold beside: hard limits, an equation of each stage, some at the end; some of them cannot.
@@ -196,20 +170,17 @@ struct RandomHard : RandomStructured<Nx, Nu, Nc> {
   std::array<double, Nec> end_most{};
 
   [[nodiscard]] bool is_hard(int c) const { return must_hold[static_cast<std::size_t>(c)]; }
-  template <class K, class X, class U>
-  auto equality(K k, const X& x, const U& u) const {
+  auto equality(auto k, const auto& x, const auto& u) const {
     return Base::template row<Nh>([&](auto n) {
       return is_on.at(k) * (std::get<(n + 1) % Nx>(x) - at[n].at(k) + by_input[n] * std::get<n % Nu>(u));
     });
   }
-  template <class X>
-  auto terminal_equality(const X& x) const {
+  auto terminal_equality(const auto& x) const {
     return Base::template row<Neh>([&](auto n) {
       return std::get<n>(x) - end_at[n] + end_bend[n] * (std::get<n>(x) * std::get<(n + 1) % Nx>(x));
     });
   }
-  template <class X>
-  auto terminal_constraint(const X& x) const {
+  auto terminal_constraint(const auto& x) const {
     return Base::template row<Nec>([&](auto n) { return std::get<(n + 1) % Nx>(x) - end_most[n]; });
   }
   /// With data of which six in ten can hold: those of a motion from `start`.
@@ -253,43 +224,6 @@ struct RandomHard : RandomStructured<Nx, Nu, Nc> {
     for (std::size_t c = 0; c < Nc; ++c) this->edge[c] += highest[c];
     for (std::size_t n = 0; n < Neh; ++n) end_at[n] = x[n] + end_bend[n] * (x[n] * x[(n + 1) % Nx]);
     for (std::size_t n = 0; n < Nec; ++n) end_most[n] = x[(n + 1) % Nx];
-  }
-};
-
-/// The same functions over arrays of one scalar type.
-template <class Base>
-struct InArrays : Base {
-  template <class T>
-  using X = std::array<T, static_cast<std::size_t>(Base::kNx)>;
-  template <class T>
-  using U = std::array<T, static_cast<std::size_t>(Base::kNu)>;
-  template <class K, class T>
-  X<T> dynamics(K k, const X<T>& x, const U<T>& u) const {
-    return solver::to_array<T>(Base::dynamics(k, x, u));
-  }
-  template <class K, class T>
-  std::array<T, Base::kNr> residual(K k, const X<T>& x, const U<T>& u) const {
-    return solver::to_array<T>(Base::residual(k, x, u));
-  }
-  template <class T>
-  X<T> terminal_residual(const X<T>& x) const {
-    return solver::to_array<T>(Base::terminal_residual(x));
-  }
-  template <class K, class T>
-  std::array<T, Base::kNc> constraint(K k, const X<T>& x, const U<T>& u) const {
-    return solver::to_array<T>(Base::constraint(k, x, u));
-  }
-  template <class K, class T>
-  std::array<T, Base::kNh> equality(K k, const X<T>& x, const U<T>& u) const {
-    return solver::to_array<T>(Base::equality(k, x, u));
-  }
-  template <class T>
-  std::array<T, Base::kNeh> terminal_equality(const X<T>& x) const {
-    return solver::to_array<T>(Base::terminal_equality(x));
-  }
-  template <class T>
-  std::array<T, Base::kNec> terminal_constraint(const X<T>& x) const {
-    return solver::to_array<T>(Base::terminal_constraint(x));
   }
 };
 

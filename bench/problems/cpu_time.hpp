@@ -30,7 +30,8 @@ struct Outcome {
   bool is_solved = false;
   bool is_impossible = false;  ///< it ended where the misses have a local minimum
   int iterations = 0;
-  double time = 0.0;               ///< CPU time from the call to the answer [s]
+  double cost = 0.0;  ///< by the independent check; where it is impossible: the sum of all misses
+  double time = 0.0;  ///< CPU time from the call to the answer [s]
   double time_in_functions = 0.0;  ///< values and derivatives of the problem in it [s]; 0 = not measured
 };
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <string_view>
 #include <tuple>
 
 #include "chicane/base/compiler.hpp"
@@ -26,8 +27,12 @@ struct DescribedData {
   double steer_limit = degrees_to_radians(25.0);
   double acceleration_limit = 1.0;
 
-  [[nodiscard]] std::array<double, 2> input_lower(int) const { return {-steer_limit, -acceleration_limit}; }
-  [[nodiscard]] std::array<double, 2> input_upper(int) const { return {steer_limit, acceleration_limit}; }
+  [[nodiscard]] CHICANE_INLINE std::array<double, 2> input_lower(int) const {
+    return {-steer_limit, -acceleration_limit};
+  }
+  [[nodiscard]] CHICANE_INLINE std::array<double, 2> input_upper(int) const {
+    return {steer_limit, acceleration_limit};
+  }
 
   /// w r² = ½ (√(2w) r)².
   static double weight(double w) { return sqrt(2.0 * w); }
@@ -80,9 +85,8 @@ struct DescribedProblem : DescribedData {
 
 /// The same problem in the solver's structured form, by the equations of controller/cubic_problem.hpp:
 /// cte_{k+1} depends on stage k alone, an output, not a state. State (x, y, ψ, v, eψ, previous δ, previous
-/// a), with the constant 1 as wide as one 512-bit vector. Over its numbers.
-template <class Real>
-struct DescribedOver {
+/// a), with the constant 1 as wide as one 512-bit vector.
+struct StructuredDescribedProblem : DescribedData {
   static constexpr int kNx = 7;
   static constexpr int kNu = 2;
   static constexpr int kNr = 7;
@@ -90,18 +94,21 @@ struct DescribedOver {
   static constexpr int kNc = 0;
   static constexpr bool kRealTime = true;
 
-  controller::CubicOver<Real> line{};
-  Real speed_reference{};
-  Real steer_limit{};
-  Real acceleration_limit{};
-  Real first_cte{};  ///< given with the start: a constant of the cost
+  controller::Cubic line{};
+  double first_cte = 0.0;  ///< given with the start: a constant of the cost
 
-  template <class K, class X, class U>
-  CHICANE_INLINE auto dynamics(K, const X& s, const U& input) const {
+  StructuredDescribedProblem() = default;
+  StructuredDescribedProblem(const DescribedData& plain, double cte)
+      : DescribedData{plain}, line{plain.path}, first_cte{cte} {}
+
+  static std::array<double, kNx> without_cte(const std::array<double, 8>& s) {
+    return {s[0], s[1], s[2], s[3], s[5], s[6], s[7]};
+  }
+
+  CHICANE_INLINE auto dynamics(auto, const auto& s, const auto& input) const {
     return model().next(s, input, input);
   }
-  template <class K, class X, class U>
-  CHICANE_INLINE auto residual(K k, const X& s, const U& input) const {
+  CHICANE_INLINE auto residual(auto k, const auto& s, const auto& input) const {
     const auto& [x, y, psi, v, epsi, last_steer, last_a] = s;
     const auto& [steer, a] = input;
     const auto change = select(solver::stage_number(k) > 0.0, 1.0, 0.0);
@@ -109,40 +116,16 @@ struct DescribedOver {
                            weight(0.1) * (v - speed_reference), weight(1.0) * steer, weight(1.0) * a,
                            change * weight(10.0) * (steer - last_steer), change * weight(1.0) * (a - last_a));
   }
-  template <class X>
-  CHICANE_INLINE auto terminal_residual(const X& s) const {
+  CHICANE_INLINE auto terminal_residual(const auto& s) const {
     const auto& [x, y, psi, v, epsi, last_steer, last_a] = s;
     return std::make_tuple(weight(200.0) * first_cte, weight(200.0) * epsi,
                            weight(0.1) * (v - speed_reference));
   }
-  template <class X>
-  CHICANE_INLINE auto next_cte(const X& s) const {
-    return model().next_lateral_error(s);
-  }
-  [[nodiscard]] std::array<Real, 2> input_lower(int) const { return {-steer_limit, -acceleration_limit}; }
-  [[nodiscard]] std::array<Real, 2> input_upper(int) const { return {steer_limit, acceleration_limit}; }
+  CHICANE_INLINE auto next_cte(const auto& s) const { return model().next_lateral_error(s); }
 
  private:
-  static double weight(double w) { return DescribedData::weight(w); }
-  [[nodiscard]] CHICANE_INLINE controller::DescribedModel<controller::CubicOver<Real>> model() const {
-    return {.line = line,
-            .dt = DescribedData::kStep,
-            .turn_per_length = DescribedData::kStep / DescribedData::kLength};
-  }
-};
-
-/// One of them.
-struct StructuredDescribedProblem : DescribedOver<double> {
-  StructuredDescribedProblem() = default;
-  explicit StructuredDescribedProblem(const DescribedProblem& plain, double cte)
-      : DescribedOver{.line = {plain.path},
-                      .speed_reference = plain.speed_reference,
-                      .steer_limit = plain.steer_limit,
-                      .acceleration_limit = plain.acceleration_limit,
-                      .first_cte = cte} {}
-
-  static std::array<double, kNx> without_cte(const std::array<double, DescribedProblem::kNx>& s) {
-    return {s[0], s[1], s[2], s[3], s[5], s[6], s[7]};
+  [[nodiscard]] CHICANE_INLINE controller::DescribedModel<controller::Cubic> model() const {
+    return {.line = line, .dt = kStep, .turn_per_length = kStep / kLength};
   }
 };
 
@@ -150,8 +133,9 @@ template <int Capacity>
 using DescribedTrajectory = solver::Trajectory<DescribedProblem::kNx, DescribedProblem::kNu, Capacity>;
 
 /// A problem with the state it starts from.
-struct DescribedInstance {
-  DescribedProblem problem;
+template <class Problem>
+struct Posed {
+  Problem problem;
   std::array<double, DescribedProblem::kNx> start{};
 
   void place(double speed) {
@@ -159,9 +143,12 @@ struct DescribedInstance {
   }
 };
 
+using DescribedInstance = Posed<DescribedProblem>;
+
 /// Random paths and speeds; offsets up to 2 m, 22° and a length that fits the horizon.
-inline DescribedInstance random_instance(Random& random, int horizon) {
-  DescribedInstance instance;
+template <class Problem = DescribedProblem>
+Posed<Problem> random_instance(Random& random, int horizon) {
+  Posed<Problem> instance;
   const double speed = random.uniform(5.0, 25.0);
   instance.problem.speed_reference = random.uniform(10.0, 25.0);
   const double length =
@@ -170,12 +157,13 @@ inline DescribedInstance random_instance(Random& random, int horizon) {
                            random.uniform(-0.2, 0.2) / length,
                            random.uniform(-0.15, 0.15) / (length * length)};
   instance.place(speed);
+  if constexpr (Problem::kNc > 0) instance.problem.draw_window(random, horizon);
   return instance;
 }
 
 /// Inputs of a critically damped path-following law: the better of the two cold starts.
-template <int Capacity>
-void guess_by_path_law(const DescribedInstance& instance, DescribedTrajectory<Capacity>& trajectory) {
+template <class Problem, int Capacity>
+void guess_by_path_law(const Posed<Problem>& instance, DescribedTrajectory<Capacity>& trajectory) {
   const DescribedProblem& p = instance.problem;
   auto s = instance.start;
   for (std::size_t k = 0; k < static_cast<std::size_t>(trajectory.horizon); ++k) {
@@ -196,5 +184,68 @@ void guess_by_path_law(const DescribedInstance& instance, DescribedTrajectory<Ca
     s = p.dynamics(0, s, trajectory.u[k]);
   }
 }
+
+/// The described problem with a soft corridor low_k <= cte_k <= high_k (linear penalty 500, quadratic 100):
+/// half-width 1.2 m with a window that forces the car at least 0.6 m to one side.
+struct CorridorProblem : DescribedProblem {
+  static constexpr int kNc = 2;
+
+  int window_begin = 0;
+  int window_end = 0;
+  double window_side = 1.0;
+  double half_width = 1.2;
+  double keep_out = 0.6;
+  solver::SoftPenalty penalty{.linear = 500.0, .quadratic = 100.0};
+
+  template <class T>
+  std::array<T, kNc> constraint(int k, const std::array<T, kNx>& s, const std::array<T, kNu>&) const {
+    double low = -half_width;
+    double high = half_width;
+    if (k >= window_begin && k < window_end) {
+      low = window_side > 0.0 ? keep_out : -2.0;
+      high = window_side > 0.0 ? 2.0 : -keep_out;
+    }
+    return {s[4] - high, low - s[4]};
+  }
+  [[nodiscard]] solver::SoftPenalty soft_penalty(int) const { return penalty; }
+  /// A window in the middle of a horizon, on a side by chance.
+  void draw_window(Random& random, int horizon) {
+    window_begin = horizon / 3;
+    window_end = horizon / 3 + std::max(2, horizon / 4);
+    window_side = random.uniform() < 0.5 ? 1.0 : -1.0;
+  }
+};
+
+/// The same problem in the solver's structured form. cte_{k+1} is an output of stage k, so each bound stands
+/// one stage earlier; the last stage has none, as the end has none.
+struct StructuredCorridorProblem : StructuredDescribedProblem {
+  static constexpr int kNc = 2;
+  static constexpr std::size_t kCapacity = 200;
+  static constexpr double kFar = 1e3;  ///< [m]
+
+  solver::StageData<kCapacity> low;
+  solver::StageData<kCapacity> high;
+  solver::SoftPenalty penalty;
+
+  StructuredCorridorProblem() = default;
+  StructuredCorridorProblem(const CorridorProblem& plain, double cte, int horizon)
+      : StructuredDescribedProblem(plain, cte), penalty(plain.penalty) {
+    for (int k = 0; k < horizon; ++k) {
+      const std::array<double, 2> excess =
+          plain.constraint(k + 1, std::array<double, DescribedProblem::kNx>{}, std::array<double, 2>{});
+      const bool is_last = k == horizon - 1;
+      high[static_cast<std::size_t>(k)] = is_last ? kFar : -excess[0];
+      low[static_cast<std::size_t>(k)] = is_last ? -kFar : excess[1];
+    }
+  }
+
+  CHICANE_INLINE auto constraint(auto k, const auto& s, const auto&) const {
+    const auto cte = next_cte(s);
+    return std::make_tuple(cte - high.at(k), low.at(k) - cte);
+  }
+  [[nodiscard]] CHICANE_INLINE solver::SoftPenalty soft_penalty(int) const { return penalty; }
+  [[nodiscard]] static std::string_view constraint_name(int c) { return c == 0 ? "left edge" : "right edge"; }
+  [[nodiscard]] static std::string_view constraint_unit(int) { return "m"; }
+};
 
 }  // namespace chicane::bench

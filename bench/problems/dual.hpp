@@ -88,103 +88,47 @@ struct Dual {
     for (std::size_t i = 0; i < N; ++i) r.d[i] = slope * a.d[i];
     return r;
   }
+
+  /// The plain number inside, however deeply nested.
+  friend constexpr double value_of(const Dual& x) noexcept { return value_of(x.v); }
+
+  friend Dual sin(const Dual& a) { return chain(a, sin(a.v), cos(a.v)); }
+  friend Dual cos(const Dual& a) { return chain(a, cos(a.v), -sin(a.v)); }
+  friend Dual tan(const Dual& a) {
+    const T t = tan(a.v);
+    return chain(a, t, 1.0 + t * t);
+  }
+  friend Dual atan(const Dual& a) { return chain(a, atan(a.v), 1.0 / (1.0 + a.v * a.v)); }
+  friend Dual asin(const Dual& a) { return chain(a, asin(a.v), 1.0 / sqrt((1.0 - a.v) * (1.0 + a.v))); }
+  friend Dual acos(const Dual& a) { return chain(a, acos(a.v), -1.0 / sqrt((1.0 - a.v) * (1.0 + a.v))); }
+  friend Dual sqrt(const Dual& a) {
+    const T s = sqrt(a.v);
+    return chain(a, s, 0.5 / s);
+  }
+  friend Dual exp(const Dual& a) {
+    const T e = exp(a.v);
+    return chain(a, e, e);
+  }
+  friend Dual log(const Dual& a) { return chain(a, log(a.v), 1.0 / a.v); }
+  friend Dual tanh(const Dual& a) {
+    const T t = tanh(a.v);
+    return chain(a, t, 1.0 - t * t);
+  }
+  friend Dual pow(const Dual& a, double exponent) {
+    return chain(a, pow(a.v, exponent), exponent == 0.0 ? T(0.0) : T(exponent * pow(a.v, exponent - 1.0)));
+  }
+  friend Dual pow(const Dual& a, const Dual& b) { return exp(b * log(a)); }
+  friend Dual hypot(const Dual& a, const Dual& b) { return sqrt(a * a + b * b); }
+  friend Dual atan2(const Dual& y, const Dual& x) {
+    const T q = x.v * x.v + y.v * y.v;
+    return chain(y, atan2(y.v, x.v), x.v / q) + chain(x, T(0.0), -y.v / q);
+  }
+
+  friend Dual abs(const Dual& a) { return value_of(a) < 0.0 ? -a : a; }
+  friend Dual select(bool chosen, const Dual& a, const Dual& b) { return chosen ? a : b; }
+  friend Dual max(const Dual& a, const Dual& b) { return value_of(a) > value_of(b) ? a : b; }
+  friend Dual min(const Dual& a, const Dual& b) { return value_of(a) < value_of(b) ? a : b; }
+  friend Dual positive_part(const Dual& a) { return value_of(a) > 0.0 ? a : Dual(0.0); }
 };
-
-/// The plain number inside, however deeply nested.
-template <int N, class T>
-[[nodiscard]] constexpr double value_of(const Dual<N, T>& x) noexcept {
-  return value_of(x.v);
-}
-
-template <int N, class T>
-[[nodiscard]] Dual<N, T> sin(const Dual<N, T>& a) {
-  return Dual<N, T>::chain(a, sin(a.v), cos(a.v));
-}
-template <int N, class T>
-[[nodiscard]] Dual<N, T> cos(const Dual<N, T>& a) {
-  return Dual<N, T>::chain(a, cos(a.v), -sin(a.v));
-}
-template <int N, class T>
-[[nodiscard]] Dual<N, T> tan(const Dual<N, T>& a) {
-  const T t = tan(a.v);
-  return Dual<N, T>::chain(a, t, 1.0 + t * t);
-}
-template <int N, class T>
-[[nodiscard]] Dual<N, T> atan(const Dual<N, T>& a) {
-  return Dual<N, T>::chain(a, atan(a.v), 1.0 / (1.0 + a.v * a.v));
-}
-template <int N, class T>
-[[nodiscard]] Dual<N, T> sqrt(const Dual<N, T>& a) {
-  const T s = sqrt(a.v);
-  return Dual<N, T>::chain(a, s, 0.5 / s);
-}
-template <int N, class T>
-[[nodiscard]] Dual<N, T> exp(const Dual<N, T>& a) {
-  const T e = exp(a.v);
-  return Dual<N, T>::chain(a, e, e);
-}
-template <int N, class T>
-[[nodiscard]] Dual<N, T> log(const Dual<N, T>& a) {
-  return Dual<N, T>::chain(a, log(a.v), 1.0 / a.v);
-}
-template <int N, class T>
-[[nodiscard]] Dual<N, T> tanh(const Dual<N, T>& a) {
-  const T t = tanh(a.v);
-  return Dual<N, T>::chain(a, t, 1.0 - t * t);
-}
-template <int N, class T>
-[[nodiscard]] Dual<N, T> asin(const Dual<N, T>& a) {
-  return Dual<N, T>::chain(a, asin(a.v), 1.0 / sqrt((1.0 - a.v) * (1.0 + a.v)));
-}
-template <int N, class T>
-[[nodiscard]] Dual<N, T> acos(const Dual<N, T>& a) {
-  return Dual<N, T>::chain(a, acos(a.v), -1.0 / sqrt((1.0 - a.v) * (1.0 + a.v)));
-}
-template <int N, class T>
-[[nodiscard]] Dual<N, T> pow(const Dual<N, T>& a, double exponent) {
-  const T slope = exponent == 0.0 ? T(0.0) : T(exponent * pow(a.v, exponent - 1.0));
-  return Dual<N, T>::chain(a, pow(a.v, exponent), slope);
-}
-template <int N, class T>
-[[nodiscard]] Dual<N, T> pow(const Dual<N, T>& a, const Dual<N, T>& b) {
-  return exp(b * log(a));
-}
-template <int N, class T>
-[[nodiscard]] Dual<N, T> hypot(const Dual<N, T>& a, const std::type_identity_t<Dual<N, T>>& b) {
-  return sqrt(a * a + b * b);
-}
-template <int N, class T>
-[[nodiscard]] Dual<N, T> abs(const Dual<N, T>& a) {
-  return value_of(a) < 0.0 ? -a : a;
-}
-template <int N, class T>
-[[nodiscard]] Dual<N, T> atan2(const Dual<N, T>& y, const Dual<N, T>& x) {
-  const T q = x.v * x.v + y.v * y.v;
-  Dual<N, T> r;
-  r.v = atan2(y.v, x.v);
-  for (std::size_t i = 0; i < N; ++i) r.d[i] = (x.v * y.d[i] - y.v * x.d[i]) / q;
-  return r;
-}
-
-template <int N, class T>
-[[nodiscard]] Dual<N, T> select(bool chosen, const Dual<N, T>& a, const std::type_identity_t<Dual<N, T>>& b) {
-  return chosen ? a : b;
-}
-template <int N, class T>
-[[nodiscard]] Dual<N, T> select(bool chosen, double a, const Dual<N, T>& b) {
-  return chosen ? Dual<N, T>(a) : b;
-}
-template <int N, class T>
-[[nodiscard]] Dual<N, T> max(const Dual<N, T>& a, const std::type_identity_t<Dual<N, T>>& b) {
-  return value_of(a) > value_of(b) ? a : b;
-}
-template <int N, class T>
-[[nodiscard]] Dual<N, T> min(const Dual<N, T>& a, const std::type_identity_t<Dual<N, T>>& b) {
-  return value_of(a) < value_of(b) ? a : b;
-}
-template <int N, class T>
-[[nodiscard]] Dual<N, T> positive_part(const Dual<N, T>& a) {
-  return value_of(a) > 0.0 ? a : Dual<N, T>(0.0);
-}
 
 }  // namespace chicane

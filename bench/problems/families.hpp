@@ -6,13 +6,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
 #include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
 #include "chicane/solver/ocp_solver.hpp"
-#include "problems/corridor_problem.hpp"
 #include "problems/described_problem.hpp"
 
 namespace chicane::bench {
@@ -26,9 +24,7 @@ enum class Start {
 
 /// One problem with the state and the inputs a solver starts from.
 template <class Problem, int Capacity>
-struct Instance {
-  Problem problem;
-  std::array<double, DescribedProblem::kNx> start{};
+struct Instance : Posed<Problem> {
   DescribedTrajectory<Capacity> guess;
 };
 
@@ -97,12 +93,10 @@ std::vector<Instance<Problem, Capacity>> drive_a_loop(int horizon, int count,
     const double length = 1.1 * std::max(speed, now.problem.speed_reference) * horizon * dt;
     now.problem.path = detail::fit(road, x, y, psi, std::max(20.0, length));
     if constexpr (Problem::kNc > 0) detail::place_window(now.problem, cycle, horizon);
-    DescribedInstance plain{.problem = static_cast<const DescribedProblem&>(now.problem)};
-    plain.place(speed);
-    now.start = plain.start;
+    now.place(speed);
     now.guess.horizon = horizon;
     if (cycle == 0) {
-      guess_by_path_law(plain, now.guess);
+      guess_by_path_law(now, now.guess);
     } else {
       now.guess = plan;
       solver::shift(now.guess, 1.0);
@@ -129,19 +123,8 @@ std::vector<Instance<Problem, Capacity>> make_family(Start start, int horizon, i
   Random random{static_cast<std::uint64_t>(7000 + horizon)};
   std::vector<Instance<Problem, Capacity>> family;
   for (int i = 0; i < count; ++i) {
-    Instance<Problem, Capacity> instance;
-    DescribedInstance plain;
-    if constexpr (Problem::kNc > 0) {
-      const CorridorInstance corridor = random_corridor(random, horizon);
-      instance.problem = corridor.problem;
-      plain = {.problem = static_cast<const DescribedProblem&>(corridor.problem), .start = corridor.start};
-    } else {
-      plain = random_instance(random, horizon);
-      instance.problem = plain.problem;
-    }
-    instance.start = plain.start;
-    instance.guess.horizon = horizon;
-    if (start == Start::kPathLaw) guess_by_path_law(plain, instance.guess);
+    Instance<Problem, Capacity> instance{random_instance<Problem>(random, horizon), {.horizon = horizon}};
+    if (start == Start::kPathLaw) guess_by_path_law(instance, instance.guess);
     solver::roll_out(instance.problem, instance.start, instance.guess);
     family.push_back(instance);
   }

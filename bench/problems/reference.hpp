@@ -6,7 +6,6 @@
 #include <string_view>
 #include <vector>
 
-#include "problems/corridor_problem.hpp"
 #include "problems/cpu_time.hpp"
 #include "problems/described_problem.hpp"
 #include "problems/families.hpp"
@@ -53,5 +52,12 @@ struct References {
     }
   }
 };
+
+/// Ipopt with exact derivatives, from a plain start and ("ipopt_hot") from its own multipliers of the cycle
+/// before, shifted. In programs that are built with it.
+void add_ipopt(References& references);
+/// fatrop and HPIPM on the structured forms, whose states are one fewer. In programs that are built with
+/// them.
+void add_peers(References& references);
 
 }  // namespace chicane::bench

@@ -5,7 +5,7 @@
 
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/solver/solution.hpp"
-#include "problems/corridor_problem.hpp"
+#include "problems/described_problem.hpp"
 
 namespace chicane::bench {
 

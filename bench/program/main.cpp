@@ -5,13 +5,7 @@
 
 #include "commands.hpp"
 #include "program.hpp"
-#include "program/measure.hpp"
-#ifdef CHICANE_HAVE_IPOPT
-#include "references/ipopt_reference.hpp"
-#endif
-#ifdef CHICANE_HAVE_PEERS
-#include "references/peer_references.hpp"
-#endif
+#include "program/report.hpp"
 
 namespace {
 

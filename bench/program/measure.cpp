@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "program/measure.hpp"
+#include "program/report.hpp"
 
 #include <fmt/format.h>
 

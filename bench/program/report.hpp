@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <atomic>
 #include <string>
 #include <vector>
 
+#include "chicane/base/result.hpp"
+#include "problems/reference.hpp"
 #include "program/solves.hpp"
 
 namespace chicane::bench {
@@ -46,5 +49,16 @@ struct Target {
 
 [[nodiscard]] std::string to_markdown(const BenchReport& report);
 [[nodiscard]] std::string to_json(const BenchReport& report);
+
+/// What `chicane bench` asks for.
+struct Request {
+  int instances = 100;                    ///< of each family
+  std::vector<int> horizons{10, 20, 50};  ///< intervals, each 2 to kLongestHorizon
+};
+
+/// Everything that `chicane bench` times, beside these solvers; says on stderr what it is at. Ends early,
+/// with what there is, when `stop` is set. Fails like run::ClosedLoop::create().
+[[nodiscard]] Result<BenchReport> measure(const Request& request, References& references,
+                                          const std::atomic<bool>& stop);
 
 }  // namespace chicane::bench

@@ -129,7 +129,7 @@ class FatropProblem final : public fatrop::Nlp<fatrop::OcpType> {
     lower = -kInfinity;
     upper = 0.0;
     for (int k = 0; k < rows.at.horizon; ++k) {
-      const auto low = rows.problem->input_lower(k), high = rows.problem->input_upper(k);
+      const auto low = rows.problem.input_lower(k), high = rows.problem.input_upper(k);
       for (int m = 0; m < inputs(); ++m) {
         const bool is_input = m < P::kNu;
         lower(info.offsets_slack[k] + m) = is_input ? low[static_cast<std::size_t>(m)] : 0.0;
@@ -204,7 +204,7 @@ class FatropProblem final : public fatrop::Nlp<fatrop::OcpType> {
       for (int k = 0; k < rows.at.horizon; ++k) {
         for (int c = 0; c < P::kNc; ++c) {
           if (const int slack = slack_of(k, Rows::kLimit, c); slack >= 0)
-            visit(info.offsets_primal_u[k] + P::kNu + slack, k, rows.problem->soft_penalty(c));
+            visit(info.offsets_primal_u[k] + P::kNu + slack, k, rows.problem.soft_penalty(c));
         }
       }
     }
@@ -221,9 +221,8 @@ class FatropSolver {
   /// The trajectory is the start; then the optimum, or as it was.
   Outcome solve(const P& problem, const std::array<double, P::kNx>& x0,
                 solver::Trajectory<P::kNx, P::kNu, Capacity>& t) {
-    const OverArrays<P> arrays{problem};
     const bool is_new = problem_->rows.at.horizon != t.horizon;
-    problem_->rows.pose(arrays, x0, t);
+    problem_->rows.pose(problem, x0, t);
     if (is_new) set_up();
     Outcome outcome;
     const double begin = cpu_time();

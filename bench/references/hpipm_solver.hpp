@@ -21,9 +21,8 @@ class HpipmSolver {
   /// The trajectory is the start; then the optimum, or as it was.
   Outcome solve(const P& problem, const std::array<double, P::kNx>& x0, typename Rows::Trajectory& t) {
     constexpr int kMostSteps = 100;
-    const OverArrays<P> arrays{problem};
     const bool is_new = rows_.at.horizon != t.horizon;
-    rows_.pose(arrays, x0, t);
+    rows_.pose(problem, x0, t);
     if (is_new) set_up();
     status_ = 1;
     Outcome outcome;
@@ -97,8 +96,8 @@ class HpipmSolver {
       std::vector<double> linear, quadratic, zero(static_cast<std::size_t>(rows_.slacks), 0.0);
       for (int c = 0; c < P::kNc; ++c) {
         if (rows_.slack_of[static_cast<std::size_t>(c)] < 0) continue;
-        linear.push_back(rows_.problem->soft_penalty(c).linear);
-        quadratic.push_back(rows_.problem->soft_penalty(c).quadratic);
+        linear.push_back(rows_.problem.soft_penalty(c).linear);
+        quadratic.push_back(rows_.problem.soft_penalty(c).quadratic);
       }
       d_ocp_qp_set_idxs_rev(k, slack_of.data(), &qp_);
       for (auto* set : {&d_ocp_qp_set_zl, &d_ocp_qp_set_zu}) (*set)(k, linear.data(), &qp_);
@@ -161,8 +160,8 @@ class HpipmSolver {
     d_ocp_qp_set_ug(k, limit.data(), &qp_);
     if (is_end) return;
     for (std::size_t m = 0; m < static_cast<std::size_t>(kNu); ++m) {
-      low.numbers[m] = rows_.problem->input_lower(k)[m] - rows_.at.u[at][m];
-      high.numbers[m] = rows_.problem->input_upper(k)[m] - rows_.at.u[at][m];
+      low.numbers[m] = rows_.problem.input_lower(k)[m] - rows_.at.u[at][m];
+      high.numbers[m] = rows_.problem.input_upper(k)[m] - rows_.at.u[at][m];
     }
     if (k > 0) {
       d_ocp_qp_set_A(k, a.data(), &qp_);
@@ -191,7 +190,7 @@ class HpipmSolver {
       for (std::size_t i = 0; i < dx.size(); ++i) rows_.at.x[at][i] += dx[i];
       if (k == rows_.at.horizon) break;
       d_ocp_qp_sol_get_u(k, &answer_, du.data());
-      const auto low = rows_.problem->input_lower(k), high = rows_.problem->input_upper(k);
+      const auto low = rows_.problem.input_lower(k), high = rows_.problem.input_upper(k);
       for (std::size_t m = 0; m < du.size(); ++m)
         rows_.at.u[at][m] = std::clamp(rows_.at.u[at][m] + du[m], low[m], high[m]);
     }
@@ -205,16 +204,15 @@ class HpipmSolver {
       d_ocp_qp_sol_get_lam_ug(k, &answer_, high.data());
       return high[static_cast<std::size_t>(line)] - low[static_cast<std::size_t>(line)];
     };
-    struct Hard {
+    struct Multipliers {
       const decltype(multiplier)& of;
       int last;
+      double constraint_multiplier(int k, int c) const { return of(k, Rows::equations(false) + c); }
       double equality_multiplier(int k, int n) const { return of(k, n); }
       double terminal_equality_multiplier(int n) const { return of(last, n); }
       double terminal_constraint_multiplier(int n) const { return of(last, Rows::equations(true) + n); }
     };
-    const KktResidual kkt = check_kkt(
-        *rows_.problem, rows_.at, [&](int k, int c) { return multiplier(k, Rows::equations(false) + c); },
-        Hard{multiplier, rows_.at.horizon});
+    const KktResidual kkt = check_kkt(rows_.problem, rows_.at, Multipliers{multiplier, rows_.at.horizon});
     return std::max({kkt.stationarity, kkt.defect, kkt.miss}) <= kTolerance &&
            kkt.subgradient <= std::sqrt(kTolerance);
   }

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "references/ipopt_reference.hpp"
-
 #include "problems/ipopt_problem.hpp"
-#include "references/described_nlp.hpp"
+#include "problems/reference.hpp"
 
 namespace chicane::bench {
 namespace {
 
-/// By a nonlinear program: the described one by hand, the corridor with derivatives by dual numbers.
-template <class Problem, class Nlp>
+template <class Problem>
 class IpoptReference final : public Reference<Problem> {
  public:
   using typename Reference<Problem>::Instance;
@@ -32,16 +29,15 @@ class IpoptReference final : public Reference<Problem> {
 
  private:
   bool is_hot_;
-  IpoptRunner<Nlp> solver_;
+  IpoptSolver<Problem, kLongestHorizon> solver_;
 };
 
 }  // namespace
 
 void add_ipopt(References& references) {
-  references.described.push_back(std::make_unique<IpoptReference<DescribedProblem, DescribedNlp>>(false));
-  references.described.push_back(std::make_unique<IpoptReference<DescribedProblem, DescribedNlp>>(true));
-  references.corridor.push_back(
-      std::make_unique<IpoptReference<CorridorProblem, IpoptProblem<CorridorProblem>>>(false));
+  references.described.push_back(std::make_unique<IpoptReference<DescribedProblem>>(false));
+  references.described.push_back(std::make_unique<IpoptReference<DescribedProblem>>(true));
+  references.corridor.push_back(std::make_unique<IpoptReference<CorridorProblem>>(false));
   references.versions += (references.versions.empty() ? "Ipopt " : ", Ipopt ") + std::string(IPOPT_VERSION);
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "references/peer_references.hpp"
-
+#include "problems/reference.hpp"
 #include "references/fatrop_solver.hpp"
 #include "references/hpipm_solver.hpp"
 

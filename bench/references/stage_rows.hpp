@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "families/kkt.hpp"
 #include "problems/cpu_time.hpp"
+#include "problems/optimality.hpp"
 
 namespace chicane::bench {
 
@@ -21,14 +21,14 @@ struct StageRows {
   using Second = Dual<kNz, First>;
   enum Kind { kDynamics, kEquation, kLimit };
 
-  const Problem* problem = nullptr;
+  Problem problem;
   Trajectory at;                   ///< where functions are evaluated
   std::vector<int> slack_of;       ///< of each constraint; −1: it must hold
   int slacks = 0;                  ///< in each stage
   double time_in_functions = 0.0;  ///< CPU time [s]
 
-  void pose(const Problem& of, const std::array<double, P::kNx>& x0, const Trajectory& start) {
-    problem = &of;
+  void pose(const P& of, const std::array<double, P::kNx>& x0, const Trajectory& start) {
+    problem = Problem{of};
     at = start;
     at.x[0] = x0;
     slack_of.clear();
@@ -47,24 +47,24 @@ struct StageRows {
     };
     const auto x = variables_at<T>(at.x[static_cast<std::size_t>(k)], 0);
     if (k == at.horizon) {
-      all(kEquation, problem->template terminal_equality<T>(x));
-      all(kLimit, problem->template terminal_constraint<T>(x));
+      all(kEquation, problem.template terminal_equality<T>(x));
+      all(kLimit, problem.template terminal_constraint<T>(x));
       return;
     }
     const auto u = variables_at<T>(at.u[static_cast<std::size_t>(k)], kNx);
-    all(kDynamics, problem->template dynamics<T>(k, x, u));
-    all(kEquation, problem->template equality<T>(k, x, u));
-    all(kLimit, problem->template constraint<T>(k, x, u));
+    all(kDynamics, problem.template dynamics<T>(k, x, u));
+    all(kLimit, problem.template constraint<T>(k, x, u));
+    all(kEquation, problem.template equality<T>(k, x, u));
   }
   template <class T, class Visit>
   void each_residual(int k, const Visit& visit) const {
     const auto x = variables_at<T>(at.x[static_cast<std::size_t>(k)], 0);
     if (k == at.horizon) {
-      for (const T& r : problem->template terminal_residual<T>(x)) visit(r);
+      for (const T& r : problem.template terminal_residual<T>(x)) visit(r);
       return;
     }
     const auto u = variables_at<T>(at.u[static_cast<std::size_t>(k)], kNx);
-    for (const T& r : problem->template residual<T>(k, x, u)) visit(r);
+    for (const T& r : problem.template residual<T>(k, x, u)) visit(r);
   }
 };
 

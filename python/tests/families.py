@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Optimal control problems of many kinds, written in Python: for tests and for the tables of docs/measured/python.md.
 
-cart_pole() is the one of bench/families/cart_pole.hpp, with its equations, costs and bounds. Others with names of bench/families are of
+cart_pole() is the one of bench/families/pendulums.hpp, with its equations, costs and bounds. Others with names of bench/families are of
 the same kind, but not the same: models, costs and bounds are other ones. swimmer, race_car, satellite and pendulum_by_energy are new."""
 from __future__ import annotations
 

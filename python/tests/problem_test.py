@@ -48,7 +48,7 @@ class Solving(unittest.TestCase):
     def test_the_cart_pole_of_the_bench_has_its_optimum(self):
         ocp, x0, _ = families.cart_pole()
         solution = ocp.solve(x0)
-        self.assertAlmostEqual(solution.cost, 89.58327, delta=1e-4)   # as compiled; the problem of bench/families/cart_pole.hpp
+        self.assertAlmostEqual(solution.cost, 89.58327, delta=1e-4)   # as compiled; the problem of bench/families/pendulums.hpp
         again = ocp.solve(x0, start=solution)
         self.assertLess(again.iterations, solution.iterations)
         self.assertAlmostEqual(again.cost, solution.cost, delta=1e-9 * solution.cost)

@@ -16,14 +16,13 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 FLAGS = ["-O2", "-std=c++20", "-DNDEBUG", f"-I{ROOT}/src", f"-I{ROOT}/bench", "-c", "-o", "/dev/null"]
-FAMILIES = ("quadrotor.hpp:Quadrotor", "reactor.hpp:Reactor", "hard_limits.hpp:Tube", "long_chain.hpp:LongChain")
+FAMILIES = ("flights.hpp:Quadrotor", "machines.hpp:Reactor", "hard_limits.hpp:Tube", "chains.hpp:LongChain")
 SOLVE = """#include "{header}"
 #include "chicane/solver/ocp_solver.hpp"
 using P = chicane::bench::{type};
 using Solver = chicane::solver::OcpSolver<P, P::kHorizon>;
-bool solve(Solver& ocp, const chicane::bench::FamilyInstance<P>& one,
-           chicane::solver::Trajectory<P::kNx, P::kNu, P::kHorizon>& plan) {{
-  return ocp.solve(one.problem, one.start, plan).status == chicane::solver::SolveStatus::kOptimal;
+bool solve(Solver& ocp, const P& one, chicane::solver::Trajectory<P::kNx, P::kNu, P::kHorizon>& plan) {{
+  return ocp.solve(one, one.start, plan).status == chicane::solver::SolveStatus::kOptimal;
 }}
 """
 

@@ -5,10 +5,7 @@
 
 #include "program/report.hpp"
 #include "program/solves.hpp"
-#ifdef CHICANE_HAVE_IPOPT
-#include "references/ipopt_reference.hpp"
 #include "support/chicane_test.hpp"
-#endif
 
 namespace chicane::bench {
 namespace {

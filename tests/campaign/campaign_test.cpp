@@ -4,7 +4,6 @@
 #include "problems/families.hpp"
 #include "problems/optimality.hpp"
 #include "problems/reference.hpp"
-#include "references/ipopt_reference.hpp"
 #include "support/chicane_test.hpp"
 
 namespace chicane {
@@ -44,21 +43,12 @@ const char* name_of(Kind kind) {
 
 template <class Problem>
 Instance<Problem> make(Kind kind, Random& random) {
-  Instance<Problem> instance;
   int horizon = 2 + static_cast<int>(random.uniform(0.0, 24.0));
   if (kind == Kind::kOneStage) horizon = 1;
   if (kind == Kind::kLong) horizon = kMostUsed;
-  bench::DescribedInstance plain;
-  if constexpr (Problem::kNc > 0) {
-    const auto corridor = bench::random_corridor(random, horizon);
-    instance.problem = corridor.problem;
-    plain = {.problem = corridor.problem, .start = corridor.start};
-  } else {
-    plain = bench::random_instance(random, horizon);
-    instance.problem = plain.problem;
-  }
-  DescribedProblem& p = plain.problem;
-  double speed = plain.start[3];
+  Instance<Problem> instance{bench::random_instance<Problem>(random, horizon), {.horizon = horizon}};
+  Problem& p = instance.problem;
+  double speed = instance.start[3];
   switch (kind) {
     case Kind::kStandstill:
       speed = 0.0;
@@ -85,11 +75,8 @@ Instance<Problem> make(Kind kind, Random& random) {
     default:
       break;
   }
-  plain.place(speed);
-  static_cast<DescribedProblem&>(instance.problem) = p;
-  instance.start = plain.start;
-  instance.guess.horizon = horizon;
-  if (random.uniform() < 0.5) bench::guess_by_path_law(plain, instance.guess);
+  instance.place(speed);
+  if (random.uniform() < 0.5) bench::guess_by_path_law(instance, instance.guess);
   solver::roll_out(instance.problem, instance.start, instance.guess);
   return instance;
 }

@@ -11,7 +11,6 @@
 #include <atomic>
 #include <mutex>
 
-#include "problems/corridor_problem.hpp"
 #include "problems/described_problem.hpp"
 #include "problems/families.hpp"
 #include "support/alloc_guard.hpp"

@@ -2,9 +2,9 @@
 #include "chicane/solver/detail/filter_method.hpp"
 
 #include "chicane/solver/ocp_solver.hpp"
-#include "families/cart_pole.hpp"
+#include "families/machines.hpp"
 #include "families/measure_family.hpp"
-#include "families/reactor.hpp"
+#include "families/pendulums.hpp"
 #include "support/chicane_test.hpp"
 
 namespace chicane::bench {
@@ -25,9 +25,8 @@ Solved<P> solve(int seed, NaiveStart start, solver::SolverOptions options = {}) 
   const auto instance = Measurement::instance(seed);
   const auto t = std::make_unique<typename Measurement::Trajectory>(Measurement::guess(instance, start));
   Solved<P> solved;
-  solved.report = ocp->solve(instance.problem, instance.start, *t);
-  solved.kkt = check_kkt(OverArrays<P>{instance.problem}, *t,
-                         [&](int k, int c) { return ocp->constraint_multiplier(k, c); });
+  solved.report = ocp->solve(instance, instance.start, *t);
+  solved.kkt = check_kkt(instance, *t, *ocp);
   return solved;
 }
 
@@ -72,8 +71,7 @@ TEST(FilterMethod, HandsOutNoWorseThanTheGuessWhenTheBudgetEnds) {
     for (int seed = 0; seed < 10; ++seed) {
       const auto instance = FamilyMeasurement<CartPole>::instance(seed);
       const auto guess = FamilyMeasurement<CartPole>::guess(instance, NaiveStart::kIdle);
-      const auto none = [](int, int) { return 0.0; };
-      const double before = check_kkt(OverArrays<CartPole>{instance.problem}, guess, none).cost;
+      const double before = check_kkt(instance, guess).cost;
       const auto [report, kkt] = solve<CartPole>(seed, NaiveStart::kIdle, {.max_iterations = iterations});
       EXPECT_LE(kkt.cost, (1.0 + 1e-9) * before) << iterations << " " << seed;
     }

@@ -3,7 +3,6 @@
 
 #include "chicane/solver/describe.hpp"
 #include "chicane/solver/ocp_solver.hpp"
-#include "families/goddard_rocket.hpp"
 #include "families/hard.hpp"
 #include "families/measure_family.hpp"
 #include "support/alloc_guard.hpp"
@@ -226,11 +225,9 @@ void expect_optimal(std::initializer_list<int> seeds, NaiveStart start, solver::
   for (const int seed : seeds) {
     const auto instance = Measurement::instance(seed);
     const auto t = std::make_unique<typename Measurement::Trajectory>(Measurement::guess(instance, start));
-    const HardReport report = ocp->solve(instance.problem, instance.start, *t);
+    const HardReport report = ocp->solve(instance, instance.start, *t);
     ASSERT_EQ(report.status, SolveStatus::kOptimal) << seed;
-    const KktResidual kkt = check_kkt(
-        OverArrays<P>{instance.problem}, *t, [&](int k, int c) { return ocp->constraint_multiplier(k, c); },
-        *ocp);
+    const KktResidual kkt = check_kkt(instance, *t, *ocp);
     EXPECT_LE(kkt.miss, 1e-6) << seed;
     EXPECT_LE(kkt.stationarity, 1.5e-6 + kkt.rounding) << seed;
     EXPECT_LE(kkt.defect, 1e-12) << seed;
@@ -250,7 +247,7 @@ TEST(HardConstraints, AreMetToALooseTolerance) {
   for (int seed = 0; seed < 12; ++seed) {
     const auto instance = FamilyMeasurement<CraneInLeastTime>::instance(seed);
     auto t = FamilyMeasurement<CraneInLeastTime>::guess(instance, NaiveStart::kIdle);
-    const HardReport report = ocp->solve(instance.problem, instance.start, t);
+    const HardReport report = ocp->solve(instance, instance.start, t);
     EXPECT_EQ(report.status, SolveStatus::kOptimal) << seed;
     EXPECT_LE(report.miss, 1e-4) << seed;
   }

@@ -13,7 +13,7 @@ using solver::SolveStatus;
 
 template <class P>
 struct Solved {
-  FamilyInstance<P> instance;
+  P instance;
   typename FamilyMeasurement<P>::Trajectory answer;
   HardReport report;
 };
@@ -25,7 +25,7 @@ std::unique_ptr<Solved<P>> solve(int seed, bool is_impossible, NaiveStart start,
   solved->answer = M::guess(solved->instance, start);
   const auto ocp = std::make_unique<solver::OcpSolver<P, P::kHorizon>>(
       solver::SolverOptions{.tolerance = tolerance, .start_from_states = start == NaiveStart::kLine});
-  solved->report = ocp->solve(solved->instance.problem, solved->instance.start, solved->answer);
+  solved->report = ocp->solve(solved->instance, solved->instance.start, solved->answer);
   return solved;
 }
 
@@ -53,7 +53,7 @@ TEST(HardLimits, AreLinearisedOnceAnIteration) {
   const auto instance = FamilyMeasurement<BrysonDenham>::instance(0);
   int count = 0;
   Counted problem;
-  static_cast<BrysonDenham&>(problem) = instance.problem;
+  static_cast<BrysonDenham&>(problem) = instance;
   problem.count = &count;
   solver::Trajectory<2, 1, Counted::kHorizon> answer;
   answer.horizon = Counted::kHorizon;
@@ -80,7 +80,7 @@ TEST(HardLimits, ThatBoundedInputsCannotKeepAreInfeasible) {
   for (const NaiveStart start : {NaiveStart::kIdle, NaiveStart::kLine}) {
     for (int seed = 0; seed < 8; ++seed) {
       const auto solved = solve<BrysonDenham>(seed, true, start);
-      const BrysonDenham& p = solved->instance.problem;
+      const BrysonDenham& p = solved->instance;
       const HardReport& report = solved->report;
       ASSERT_EQ(report.status, SolveStatus::kInfeasible) << seed << to_string(start);
       const auto& x = solved->answer.x;
@@ -94,7 +94,7 @@ TEST(HardLimits, ThatBoundedInputsCannotKeepAreInfeasible) {
       }
       double furthest = 0.0;
       for (const auto& at : x) furthest = std::max(furthest, at[0]);
-      const double stop = p.speed * p.speed / (2.0 * p.most);  // by braking all the time
+      const double stop = p.speed * p.speed / (2.0 * p.most[0]);  // by braking all the time
       EXPECT_GE(furthest, 0.98 * stop) << seed;
       EXPECT_LE(furthest, 1.1 * stop + 0.05 * p.speed) << seed;
       EXPECT_LE(report.iterations, 500) << seed;
@@ -116,7 +116,7 @@ double total_violation(const Tanks& problem, const std::array<double, 2>& start,
 TEST(HardLimits, ComeBackWithTheLeastViolation) {
   for (int seed = 0; seed < 5; ++seed) {
     const auto solved = solve<Tanks>(seed, true, NaiveStart::kIdle);
-    const Tanks& p = solved->instance.problem;
+    const Tanks& p = solved->instance;
     ASSERT_EQ(solved->report.status, SolveStatus::kInfeasible) << seed;
     const double least = total_violation(p, solved->instance.start, solved->answer);
     for (std::size_t k = 0; k < Tanks::kHorizon; ++k) {

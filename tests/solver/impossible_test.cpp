@@ -15,17 +15,18 @@ using solver::SolveStatus;
 struct Endings {
   int solves = 0, infeasible = 0, optimal = 0, usable = 0, most_iterations = 0;
 };
-template <class P, class Make>
-Endings solve(int instances, const Make& make) {
+template <class P, class Draw>
+Endings solve(int instances, const Draw& draw) {
   Endings endings;
   const auto ocp = std::make_unique<solver::OcpSolver<P, P::kHorizon>>();
   for (const NaiveStart start : {NaiveStart::kIdle, NaiveStart::kLine}) {
     ocp->set_options({.start_from_states = start == NaiveStart::kLine});
     for (int seed = 0; seed < instances; ++seed) {
       Random random{static_cast<std::uint64_t>(seed) * 7919U + 17U};
-      const FamilyInstance<P> one = make(random);
+      P one;
+      draw(one, random);
       auto t = FamilyMeasurement<P>::guess(one, start);
-      const HardReport report = ocp->solve(one.problem, one.start, t);
+      const HardReport report = ocp->solve(one, one.start, t);
       ++endings.solves;
       endings.infeasible += report.status == SolveStatus::kInfeasible ? 1 : 0;
       endings.optimal += report.status == SolveStatus::kOptimal ? 1 : 0;
@@ -39,8 +40,9 @@ Endings solve(int instances, const Make& make) {
 // Near misses need a certificate within rounding, conflicts one without a nearly feasible point.
 TEST(Impossible, PointMassesAreInfeasibleWhateverTheConflict) {
   for (int kind = 0; kind < PointMass::kKinds; ++kind) {
-    const Endings endings = solve<PointMass>(
-        5, [&](Random& random) { return PointMass::make(static_cast<PointMass::Kind>(kind), random, true); });
+    const Endings endings = solve<PointMass>(5, [&](PointMass& one, Random& random) {
+      one.draw(static_cast<PointMass::Kind>(kind), random, true);
+    });
     EXPECT_EQ(endings.usable, 0) << kind;
     EXPECT_EQ(endings.infeasible, endings.solves) << kind;
     EXPECT_LE(endings.most_iterations, 600) << kind;
@@ -50,16 +52,17 @@ TEST(Impossible, MultipliersOfTheViolationStartNoOtherSolve) {
   using Solver = solver::OcpSolver<PointMass, PointMass::kHorizon>;
   const auto ocp = std::make_unique<Solver>();
   Random random{17U};
-  const FamilyInstance<PointMass> one = PointMass::make(PointMass::Kind{}, random, true);
+  PointMass one;
+  one.draw(PointMass::Kind{}, random, true);
   auto t = FamilyMeasurement<PointMass>::guess(one, NaiveStart::kIdle);
   const auto multipliers = std::make_unique<Solver::Multipliers>();
-  EXPECT_EQ(ocp->solve(one.problem, one.start, t, *multipliers).status, SolveStatus::kInfeasible);
+  EXPECT_EQ(ocp->solve(one, one.start, t, *multipliers).status, SolveStatus::kInfeasible);
   EXPECT_FALSE(multipliers->is_known);
 }
 TEST(Impossible, PointMassesWithSomeRoomAreOptimal) {
   for (int kind = 0; kind < PointMass::kKinds; ++kind) {
-    const Endings endings = solve<PointMass>(2, [&](Random& random) {
-      return PointMass::make(static_cast<PointMass::Kind>(kind), random, false);
+    const Endings endings = solve<PointMass>(2, [&](PointMass& one, Random& random) {
+      one.draw(static_cast<PointMass::Kind>(kind), random, false);
     });
     EXPECT_EQ(endings.optimal, endings.solves) << kind;
   }
@@ -67,7 +70,7 @@ TEST(Impossible, PointMassesWithSomeRoomAreOptimal) {
 
 template <class P>
 void expect_infeasible() {
-  const Endings endings = solve<P>(8, [](Random& random) { return P::make(random, true); });
+  const Endings endings = solve<P>(8, [](P& one, Random& random) { one.draw(random, true); });
   EXPECT_EQ(endings.usable, 0);
   EXPECT_EQ(endings.infeasible, endings.solves);
   EXPECT_LE(endings.most_iterations, 800);  // rounds from the guess come after the proof
@@ -81,14 +84,13 @@ TEST(Impossible, APostDeadAheadIsPassed) {
   for (const NaiveStart start : {NaiveStart::kIdle, NaiveStart::kLine}) {
     ocp->set_options({.start_from_states = start == NaiveStart::kLine});
     for (const double radius : {0.1, 0.2, 0.3}) {
-      FamilyInstance<PointMass> one;
-      one.problem.radius = radius;
-      one.problem.post_x = 0.8;
-      one.problem.end = one.goal = {1.6, 0.0, 0.0, 0.0};
-      one.problem.has_end = {1.0, 1.0, 1.0, 1.0};
+      PointMass one;
+      one.radius = radius;
+      one.post_x = 0.8;
+      one.end = one.goal = {1.6, 0.0, 0.0, 0.0};
+      one.has_end = {1.0, 1.0, 1.0, 1.0};
       auto t = FamilyMeasurement<PointMass>::guess(one, start);
-      EXPECT_EQ(ocp->solve(one.problem, one.start, t).status, SolveStatus::kOptimal)
-          << radius << to_string(start);
+      EXPECT_EQ(ocp->solve(one, one.start, t).status, SolveStatus::kOptimal) << radius << to_string(start);
     }
   }
 }

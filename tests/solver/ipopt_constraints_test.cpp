@@ -4,7 +4,6 @@
 #include "chicane/solver/ocp_solver.hpp"
 #include "families/hard.hpp"
 #include "families/measure_family.hpp"
-#include "problems/corridor_problem.hpp"
 #include "problems/described_problem.hpp"
 #include "problems/ipopt_problem.hpp"
 #include "problems/optimality.hpp"
@@ -14,7 +13,6 @@
 namespace chicane {
 namespace {
 
-using bench::DescribedProblem;
 using solver::SolveStatus;
 using namespace test;
 
@@ -28,12 +26,10 @@ TEST_P(ConstraintsAgainstIpopt, AgreesOnTheOptimumWithASoftCorridor) {
   const auto ocp = std::make_unique<solver::OcpSolver<CorridorProblem, kCapacity>>();
   Random random{2000 + static_cast<std::uint64_t>(GetParam().horizon)};
   for (int i = 0; i < GetParam().count; ++i) {
-    const auto instance = bench::random_corridor(random, GetParam().horizon);
-    const bench::DescribedInstance plain{.problem = static_cast<const DescribedProblem&>(instance.problem),
-                                         .start = instance.start};
+    const auto instance = bench::random_instance<CorridorProblem>(random, GetParam().horizon);
     bench::DescribedTrajectory<kCapacity> own;
     own.horizon = GetParam().horizon;
-    choose_start(GetParam().start, plain, instance.problem, *ocp, own);
+    choose_start(GetParam().start, instance, *ocp, own);
     auto reference = own;
     const auto report = ocp->solve(instance.problem, instance.start, own);
     ASSERT_EQ(report.status, SolveStatus::kOptimal) << i;
@@ -55,10 +51,9 @@ void expect_hard_optima(bench::NaiveStart start, int count) {
   for (int seed = 0; seed < count; ++seed) {
     const auto instance = Measurement::instance(seed);
     const auto own = std::make_unique<typename Measurement::Trajectory>(Measurement::guess(instance, start));
-    const auto report = ocp->solve(instance.problem, instance.start, *own);
+    const auto report = ocp->solve(instance, instance.start, *own);
     ASSERT_EQ(report.status, SolveStatus::kOptimal) << seed;
-    const bench::OverArrays<P> arrays{instance.problem};
-    const double cost = bench::solve_with_ipopt(arrays, instance.start, *own);
+    const double cost = bench::solve_with_ipopt(instance, instance.start, *own);
     ASSERT_NEAR(report.cost, cost, 1e-6 * std::fabs(cost)) << seed;
   }
 }

@@ -27,23 +27,23 @@ inline std::string name_of(const testing::TestParamInfo<Family>& info) {
 }
 
 template <class Problem>
-void choose_start(Start start, const bench::DescribedInstance& plain, const Problem& problem,
+void choose_start(Start start, const bench::Posed<Problem>& posed,
                   solver::OcpSolver<Problem, kIpoptCapacity>& ocp,
                   bench::DescribedTrajectory<kIpoptCapacity>& trajectory) {
   const int horizon = trajectory.horizon;
   trajectory = {};
   trajectory.horizon = horizon;
-  if (start != Start::kCold) bench::guess_by_path_law(plain, trajectory);
+  if (start != Start::kCold) bench::guess_by_path_law(posed, trajectory);
   if (start == Start::kWarm) {  // the previous cycle: half a step earlier, another speed wanted
-    Problem before = problem;
+    Problem before = posed.problem;
     before.speed_reference -= 0.5;
-    auto x0 = plain.start;
+    auto x0 = posed.start;
     x0[1] -= 0.05;
     x0[4] += 0.05;
     ocp.solve(before, x0, trajectory);
     solver::shift(trajectory, 0.5);
   }
-  solver::roll_out(problem, plain.start, trajectory);
+  solver::roll_out(posed.problem, posed.start, trajectory);
 }
 
 inline constexpr Family kFamilies[] = {

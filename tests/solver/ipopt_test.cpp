@@ -29,7 +29,7 @@ TEST_P(AgainstIpopt, AgreesOnTheOptimumOfTheDescribedProblem) {
     const auto instance = bench::random_instance(random, GetParam().horizon);
     bench::DescribedTrajectory<kIpoptCapacity> own;
     own.horizon = GetParam().horizon;
-    choose_start(GetParam().start, instance, instance.problem, *ocp, own);
+    choose_start(GetParam().start, instance, *ocp, own);
     auto reference = own;
     const auto report = ocp->solve(instance.problem, instance.start, own);
     ASSERT_EQ(report.status, SolveStatus::kOptimal) << i;

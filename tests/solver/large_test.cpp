@@ -2,7 +2,7 @@
 // Problems of more variables in a stage than are unrolled.
 
 #include "chicane/solver/ocp_solver.hpp"
-#include "families/long_chain.hpp"
+#include "families/chains.hpp"
 #include "families/measure_family.hpp"
 #include "support/chicane_test.hpp"
 
@@ -16,10 +16,9 @@ void expect_calm(int seed, NaiveStart start, const solver::SolverOptions& option
   const auto ocp = std::make_unique<Solver>(options);
   const auto instance = Measurement::instance(seed);
   const auto t = std::make_unique<Measurement::Trajectory>(Measurement::guess(instance, start));
-  const solver::SolveReport report = ocp->solve(instance.problem, instance.start, *t);
+  const solver::SolveReport report = ocp->solve(instance, instance.start, *t);
   EXPECT_EQ(report.status, solver::SolveStatus::kOptimal) << seed;
-  const auto none = [](int, int) { return 0.0; };
-  const KktResidual kkt = check_kkt(OverArrays<LongChain>{instance.problem}, *t, none);
+  const KktResidual kkt = check_kkt(instance, *t);
   EXPECT_LE(kkt.stationarity, 1.1e-6) << seed;
   EXPECT_LE(kkt.defect, 1e-12) << seed;
   EXPECT_LE(kkt.outside, 0.0) << seed;

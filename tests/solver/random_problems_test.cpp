@@ -4,7 +4,6 @@
 #include "chicane/base/random.hpp"
 #include "chicane/solver/ocp_solver.hpp"
 #include "fuzz/classify.hpp"
-#include "fuzz/random_case.hpp"
 #include "fuzz/random_problem.hpp"
 #include "support/chicane_test.hpp"
 

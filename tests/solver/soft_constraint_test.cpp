@@ -2,7 +2,7 @@
 #include "chicane/solver/detail/soft_constraint.hpp"
 
 #include "chicane/solver/ocp_solver.hpp"
-#include "problems/corridor_problem.hpp"
+#include "problems/described_problem.hpp"
 #include "problems/optimality.hpp"
 #include "support/chicane_test.hpp"
 
@@ -119,7 +119,7 @@ TEST_F(SoftOcp, WhateverTheStatusTheReportIsOfTheAnswer) {
   Random random{81};
   int cut_short = 0;
   for (int i = 0; i < 40; ++i) {
-    bench::CorridorInstance instance = bench::random_corridor(random, kHorizon);
+    auto instance = bench::random_instance<bench::CorridorProblem>(random, kHorizon);
     instance.problem.penalty = {.linear = 3e4, .quadratic = 1e4};
     for (int iterations = 1; iterations <= 40; ++iterations) {
       *ocp = Solver{{.max_iterations = iterations}};

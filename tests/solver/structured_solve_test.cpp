@@ -3,10 +3,9 @@
 #include "chicane/base/jet.hpp"
 #include "chicane/solver/describe.hpp"
 #include "chicane/solver/ocp_solver.hpp"
-#include "problems/corridor_problem.hpp"
+#include "families/flights.hpp"
 #include "problems/described_problem.hpp"
 #include "problems/optimality.hpp"
-#include "problems/racing_problem.hpp"
 #include "support/chicane_test.hpp"
 
 namespace chicane {
@@ -14,12 +13,19 @@ namespace {
 
 using bench::CorridorProblem;
 using bench::DescribedProblem;
-using bench::RacingProblem;
 using bench::StructuredCorridorProblem;
 using bench::StructuredDescribedProblem;
 using solver::SolveStatus;
 
 constexpr int kCapacity = 60;
+
+/// In the real-time form: full steps and growing horizons.
+struct Flight : bench::Quadrotor {
+  static constexpr bool kRealTime = true;
+  double price = 100.0;  ///< of being inside a ball
+  [[nodiscard]] solver::SoftPenalty soft_penalty(int) const { return {.linear = price, .quadratic = price}; }
+  [[nodiscard]] static std::string_view constraint_name(int c) { return c == 0 ? "near ball" : "far ball"; }
+};
 
 /// First and second derivatives of one row, those that its type knows to be zero among them.
 template <std::size_t Nz>
@@ -98,9 +104,8 @@ TEST(StructuredProblem, HasTheFirstAndSecondDerivativesOfFullJets) {
     const auto at = [&] { return random.uniform(-0.5, 0.5); };
     const StructuredDescribedProblem described{instance.problem, 0.3};
     check_derivatives(described, {20.0 * at(), at(), at(), 12.0 + at(), at(), at(), at()}, {at(), at()});
-    check_derivatives(bench::sample_racing_problem(0.02),
-                      {10.0, at(), at(), 25.0 + at(), at(), at(), 0.2 * at(), at(), at()},
-                      {at(), at(), at()});
+    check_derivatives(Flight{}, {at(), at(), at(), at(), at(), at(), at(), at(), at()},
+                      {9.81 + at(), at(), at(), at()});
   }
 }
 
@@ -192,11 +197,10 @@ TEST(StructuredSolve, AgreesWithTheDensePathInACorridor) {
   Random random{78};
   for (const int horizon : {2, 10, 20, 40}) {
     for (int turn = 0; turn < 10; ++turn) {
-      const auto instance = bench::random_corridor(random, horizon);
-      const bench::DescribedInstance start{.problem = instance.problem, .start = instance.start};
+      const auto instance = bench::random_instance<CorridorProblem>(random, horizon);
       bench::DescribedTrajectory<kCapacity> plain;
       plain.horizon = horizon;
-      bench::guess_by_path_law(start, plain);
+      bench::guess_by_path_law(instance, plain);
       const StructuredCorridorProblem problem{instance.problem, instance.start[4], horizon};
       Own::Trajectory answer;
       answer.horizon = horizon;
@@ -218,7 +222,7 @@ TEST(StructuredSolve, RefusesAConstraintThatIsNotANumberAtAnyStage) {
   using Own = solver::OcpSolver<StructuredCorridorProblem, kCapacity>;
   const auto own = std::make_unique<Own>();
   Random random{80};
-  const auto instance = bench::random_corridor(random, 20);
+  const auto instance = bench::random_instance<CorridorProblem>(random, 20);
   const StructuredCorridorProblem good{instance.problem, instance.start[4], 20};
   for (const std::size_t stage : {0, 1, 7, 8, 19}) {
     for (const bool is_high : {true, false}) {
@@ -234,24 +238,30 @@ TEST(StructuredSolve, RefusesAConstraintThatIsNotANumberAtAnyStage) {
 }
 
 #ifdef CHICANE_SLOW_TESTS
-TEST(StructuredSolve, SolvesARacingProblemAndSaysWhatBinds) {
-  using Own = solver::OcpSolver<RacingProblem, kCapacity>;
+TEST(StructuredSolve, SolvesAFlightAndSaysWhatBinds) {
+  using Own = solver::OcpSolver<Flight, kCapacity>;
   const auto own = std::make_unique<Own>(solver::SolverOptions{.max_iterations = 100});
-  for (const double bend : {-0.015, 0.005, 0.01, 0.02}) {
-    const RacingProblem problem = bench::sample_racing_problem(bend);
-    for (const int horizon : {40, 60}) {
-      Own::Trajectory answer;
-      answer.horizon = horizon;
-      const auto report = own->solve(problem, bench::kRacingStart, answer);
-      ASSERT_EQ(report.status, SolveStatus::kOptimal) << bend << ' ' << horizon;
-      ASSERT_LE(report.stationarity, 1e-6);
-      for (int k = 0; k <= horizon; ++k)
-        EXPECT_LT(std::fabs(answer.x[static_cast<std::size_t>(k)][1]), problem.half_width + 1.0);
-      if (report.worst_stage >= 0) {
-        EXPECT_NE(solver::describe(problem, report).find(" exceeded by "), std::string::npos);
+  int exceeded = 0;
+  for (const double price : {100.0, 0.1}) {
+    for (const std::uint64_t seed : {0, 3, 5, 7}) {
+      Random random{seed};
+      Flight problem;
+      problem.draw(random);
+      problem.price = price;
+      for (const int horizon : {40, 60}) {
+        Own::Trajectory answer;
+        answer.horizon = horizon;
+        answer.u.fill(problem.idle);
+        const auto report = own->solve(problem, problem.start, answer);
+        ASSERT_EQ(report.status, SolveStatus::kOptimal) << seed << ' ' << horizon;
+        ASSERT_LE(report.stationarity, 1e-6);
+        if (report.worst_stage < 0) continue;
+        ++exceeded;
+        EXPECT_NE(solver::describe(problem, report).find(" ball exceeded by "), std::string::npos);
       }
     }
   }
+  EXPECT_GT(exceeded, 0);
 }
 #endif
 
@@ -261,11 +271,11 @@ TEST(Describe, NamesConstraintStageAndUnit) {
   report.violation = 0.12;
   report.worst_stage = 14;
   report.worst_constraint = 1;
-  EXPECT_EQ(solver::describe(RacingProblem{}, report),
+  EXPECT_EQ(solver::describe(StructuredCorridorProblem{}, report),
             "infeasible: right edge exceeded by 0.12 m at stage 14");
   report.worst_stage = report.worst_constraint = -1;
   report.status = SolveStatus::kOptimal;
-  EXPECT_EQ(solver::describe(RacingProblem{}, report), "optimal");
+  EXPECT_EQ(solver::describe(StructuredCorridorProblem{}, report), "optimal");
 }
 
 }  // namespace
