@@ -78,15 +78,16 @@ class Drive(unittest.TestCase):
 
     def test_is_shown_in_the_dashboard(self):
         page = str(Path(self.folder.name) / "run.html")
-        shown = ch.report(self.file, page)
+        shown = ch.report(self.driven, page)
         self.assertEqual(shown.file, page)
         self.assertIn("run.mcap", Path(page).read_text(encoding="utf-8"))
         self.assertIn("<iframe", shown._repr_html_())
 
     def test_replaces_a_recording_and_nothing_else(self):
         file = Path(self.folder.name) / "again.mcap"
-        for _ in range(2):
-            ch.drive("oval", laps=0, settings={"time_limit_s": 1}, record=file, frames=False)
+        for preset in ("default", "pid"):
+            run = ch.drive("oval", preset=preset, laps=0, settings={"time_limit_s": 1}, record=file, frames=False)
+            self.assertEqual(run["preset"], preset)
         file.write_text("not a recording", encoding="utf-8")
         with self.assertRaisesRegex(ValueError, "again.mcap: .*exists"):
             ch.drive("oval", laps=0, settings={"time_limit_s": 1}, record=file)

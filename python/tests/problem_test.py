@@ -110,6 +110,7 @@ class Solving(unittest.TestCase):
         solution = ocp.solve([1.0, 0.0])
         self.assertTrue(solution)
         self.assertAlmostEqual(solution.x[-1, 0], 0.2, places=5)
+        self.assertEqual(solution.multipliers["terminal_equality"].shape, (1,))
         self.assertGreaterEqual(solution.x[:, 1].min(), -0.6 - 1e-5)
         impossible = ocp.solve([3.0, 0.0])
         self.assertFalse(impossible.is_usable)
@@ -384,6 +385,8 @@ class Compiled(unittest.TestCase):
             for name in ("cart_pole_problem.cpp", "cart_pole_problem.h"):
                 self.assertEqual(Path(made, name).read_text(encoding="utf-8"), (folder / name).read_text(encoding="utf-8"),
                                  "./run.sh python examples/c/cart_pole_problem.py")
+            families.cart_pole()[0].export(f"{made}/cart_pole.hpp")
+            self.assertIn("struct Problem", Path(made, "cart_pole.hpp").read_text(encoding="utf-8"))
         with self.assertRaisesRegex(ValueError, "export_c: got the name 'cart-pole', expected a C identifier"):
             families.cart_pole()[0].export_c("cart-pole")
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 // `chicane check` from outside: it judges what `chicane drive` judges.
-#include <unistd.h>
 
 #include "apps/program_outcome.hpp"
 #include "support/chicane_test.hpp"
-#include "support/folder.hpp"
+#include "support/roads.hpp"
 
 namespace chicane {
 namespace {
@@ -14,18 +13,14 @@ using ::testing::EndsWith;
 /// Words of both outputs.
 test::Outcome chicane(const std::string& arguments) { return test::chicane_program(arguments + " 2>&1"); }
 
-class CheckCommand : public testing::Test, protected test::Folder {
- protected:
-};
+class CheckCommand : public testing::Test, protected test::Folder {};
 
 /// A closed circle of this radius and half width [m].
 std::string circle(double radius, double half_width) {
   std::string text = "x_m,y_m,w_tr_right_m,w_tr_left_m\n";
-  for (int i = 0; i < 60; ++i) {
-    const double angle = 2.0 * 3.14159265358979 * i / 60.0;
-    text += std::to_string(radius * std::cos(angle)) + "," + std::to_string(radius * std::sin(angle)) + "," +
-            std::to_string(half_width) + "," + std::to_string(half_width) + "\n";
-  }
+  const std::string width = "," + std::to_string(half_width);
+  for (const Vec2& point : test::circle_points(radius, 60))
+    text += std::to_string(point.x()) + "," + std::to_string(point.y()) + width + width + "\n";
   return text;
 }
 

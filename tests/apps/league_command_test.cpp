@@ -83,15 +83,6 @@ TEST_F(LeagueCommand, LeavesAPageThatItCannotReplace) {
   EXPECT_EQ(content("old.html"), "old\n");
 }
 
-TEST_F(LeagueCommand, RefusesTheResultsOfAnotherLeagueAndLeavesThem) {
-  ASSERT_EQ(league("  ours: {preset: pid}\n", ""), 0) << said_.err;
-  const std::string beside = content("r.beside.jsonl");
-  ASSERT_EQ(league("  ours: {preset: stanley}\n", ""), 2) << said_.err;
-  EXPECT_THAT(said_.err, HasSubstr("r.beside.jsonl: got the limits and trials of l (plan "));
-  EXPECT_THAT(said_.err, HasSubstr("; choose another file"));
-  EXPECT_EQ(content("r.beside.jsonl"), beside);
-}
-
 TEST_F(LeagueCommand, SaysAtOnceThatAPageCannotBeWritten) {
   EXPECT_EQ(league("  ours: {preset: pid}\n", "-o /nowhere/l.html"), 3);
   EXPECT_THAT(said_.err, HasSubstr("/nowhere/l.html: cannot be written: No such file or directory"));

@@ -10,20 +10,17 @@
 namespace chicane {
 namespace {
 
-class OtherProgram : public ::testing::Test {
+class OtherProgram : public ::testing::Test, protected test::Folder {
  protected:
   OtherProgram() {
     fs::create_directories(folder_ / "bin");
     fs::copy_file(CHICANE_PROGRAM, folder_ / "bin/chicane");
   }
-  ~OtherProgram() override { fs::remove_all(folder_); }
 
   [[nodiscard]] test::Outcome run(const std::string& words) const {
     const std::string where = "'" + folder_.string() + "/";
     return test::shell("PATH=" + where + "path' " + where + "bin/chicane' " + words);
   }
-
-  fs::path folder_ = test::file_of_test("programs");
 };
 
 TEST_F(OtherProgram, ThatIsMissingIsSaidWithTheWayToHaveIt) {

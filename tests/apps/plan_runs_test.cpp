@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Commands that drive many runs by a plan: what they keep, and how they go on.
-#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 
@@ -12,10 +11,8 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;  // lines begin with their run
 
-class PlanRuns : public testing::Test {
+class PlanRuns : public testing::Test, protected Folder {
  protected:
-  ~PlanRuns() override { fs::remove(file_); }
-
   [[nodiscard]] std::vector<std::string> lines() const {
     std::ifstream stream(file_);
     std::vector<std::string> lines;
@@ -27,33 +24,12 @@ class PlanRuns : public testing::Test {
     for (const std::string& line : lines) stream << line << '\n';
   }
 
-  const fs::path file_ =
-      fs::path(::testing::TempDir()) / ("chicane_plan_runs_" + std::to_string(::getpid()) + ".jsonl");
+  const std::string file_ = path("runs.jsonl");
 };
-
-TEST_F(PlanRuns, ACampaignGoesOnWithWhatIsMissingAndPastWhatCannotBeDriven) {
-  const std::string command =
-      "campaign --faults link_lost --for-s 1,2 --onsets 2 --tracks hairpins,oval --cars indy --jobs 1 "
-      "--results '" +
-      file_.string() + "'";
-  const Outcome whole = chicane_program(command);
-  const std::vector<std::string> told = lines();
-  ASSERT_EQ(told.size(), 5U) << whole.err;
-  EXPECT_EQ(whole.code, 1);
-  EXPECT_THAT(whole.err, HasSubstr("not tried: track: hairpins is not for the car indy"));
-  EXPECT_THAT(whole.out, HasSubstr("link_lost"));
-
-  keep({told[0], told[1], told[2], told[3]});
-  const Outcome resumed = chicane_program(command);
-  EXPECT_EQ(lines(), told) << "the same bytes";
-  EXPECT_EQ(resumed.out, whole.out);
-  EXPECT_EQ(resumed.code, 1) << "the hairpins are still not tried";
-}
 
 TEST_F(PlanRuns, RecoverGoesOnWithWhatIsMissingAndSaysTheSame) {
   const std::string command =
-      "recover --tracks oval --cars udacity --starts 3 --seed 2 --jobs 1 --json --results '" +
-      file_.string() + "'";
+      "recover --tracks oval --cars udacity --starts 3 --seed 2 --jobs 1 --json --results '" + file_ + "'";
   const Outcome whole = chicane_program(command);
   const std::vector<std::string> told = lines();
   ASSERT_EQ(told.size(), 4U) << whole.err;
@@ -91,8 +67,7 @@ TEST_F(PlanRuns, OneStartIsThatOfAllStarts) {
 }
 
 TEST_F(PlanRuns, ALaneChangeIsShownFromItsFile) {
-  const std::string command =
-      "lane-change --cars udacity --presets stanley --json --results '" + file_.string() + "'";
+  const std::string command = "lane-change --cars udacity --presets stanley --json --results '" + file_ + "'";
   const Outcome mistake = chicane_program("lane-change --cars moped --presets stanley");
   EXPECT_EQ(mistake.code, 2);
   EXPECT_THAT(mistake.err, HasSubstr("car: got \"moped\""));
@@ -109,6 +84,32 @@ TEST_F(PlanRuns, ALaneChangeIsShownFromItsFile) {
   line["entry_kmph"] = 77;
   keep({told[0], line.dump()});
   EXPECT_EQ(OrderedJson::parse(chicane_program(command).out)["rows"][0]["entry_kmph"], 77);
+}
+
+TEST(PlanCommand, CtrlCEndsPlanningAtOnce) {
+  for (const std::string command : {"drive", "serve"}) {
+    const Outcome outcome =
+        interrupted_program(command + " --preset race --car road-car --track speedway --port 0 --no-cache",
+                            "the lap is planned first");
+    EXPECT_EQ(outcome.code, 1) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("stopped before the run began")) << command;
+    EXPECT_THAT(outcome.err, HasSubstr("dashboard will be at http://localhost:")) << command;
+    EXPECT_THAT(outcome.out, IsEmpty());
+  }
+}
+
+TEST(PlanCommand, ABudgetEndsPlanningWithTheBestSoFar) {
+  const std::string drive =
+      "drive --preset race --track oval --fast --laps 1 --no-cache --json --set tracking_mpc.plan_budget_s=";
+  const Outcome none = chicane_program(drive + "0.1");
+  EXPECT_EQ(none.code, 0) << none.err;
+  EXPECT_THAT(none.err, HasSubstr("plan: none found"));
+  const Outcome some = chicane_program(drive + "0.5");
+  EXPECT_EQ(some.code, 0) << some.err;
+  EXPECT_THAT(some.err, HasSubstr("plan: the best so far, no optimum: tracking_mpc.plan_budget_s"));
+  const Outcome limit = chicane_program("limit --track oval --no-cache --budget-s 0.4");
+  EXPECT_EQ(limit.code, 0) << limit.err;
+  EXPECT_THAT(limit.out, HasSubstr("is the best lap so far, no bound"));
 }
 
 }  // namespace

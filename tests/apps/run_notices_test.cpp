@@ -2,6 +2,7 @@
 #include "progress.hpp"
 
 #include "apps/program_outcome.hpp"
+#include "experiment.hpp"
 #include "support/chicane_test.hpp"
 
 namespace chicane::apps {
@@ -145,6 +146,29 @@ TEST(RunNotices, ComeWhenItHappensAndBesideTheResults) {
   EXPECT_THAT(lost.err,
               HasSubstr("The guard holds the car. It ends when the measurements are right again. "));
   EXPECT_THAT(lost.err, HasSubstr("the controller drives again, after "));
+}
+
+using safety::GuardMode;
+using ::testing::Eq;
+
+/// Text of a short run on stderr.
+std::string said_by_drive(const std::string& options) {
+  return test::chicane_program("drive --fast --laps 1 --set time_limit_s=0.2 " + options).err;
+}
+
+TEST(GuardNotice, SaysWhatTheOptionsLeaveOpen) {
+  EXPECT_EQ(guard_notice({}), "");
+  EXPECT_THAT(guard_notice({.mode = GuardMode::kOff}), StartsWith("guard.mode=off: "));
+  EXPECT_THAT(guard_notice({.mode = GuardMode::kObserve, .blind_time = 0.0}),
+              StartsWith("guard.mode=observe: "));
+  EXPECT_THAT(guard_notice({.blind_time = 0.0}), StartsWith("guard.blind_time_s=0: "));
+}
+
+TEST(GuardNotice, IsOneLineAtTheStartOfARunButNotBesideJson) {
+  EXPECT_THAT(said_by_drive("--set guard.mode=off"), Eq(guard_notice({.mode = GuardMode::kOff}) + "\n"));
+  EXPECT_THAT(said_by_drive("--set guard.blind_time_s=0"), Eq(guard_notice({.blind_time = 0.0}) + "\n"));
+  EXPECT_EQ(said_by_drive(""), "");
+  EXPECT_EQ(said_by_drive("--set guard.mode=off --json"), "");
 }
 
 }  // namespace

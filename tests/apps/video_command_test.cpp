@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A film from outside, with a shell script in ffmpeg's place: the package is optional.
-#include <unistd.h>
 
 #include "apps/program_outcome.hpp"
 #include "support/chicane_test.hpp"
-#include "support/folder.hpp"
 
 namespace chicane {
 namespace {
@@ -13,20 +11,17 @@ class VideoCommand : public testing::Test, protected test::Folder {
  protected:
   VideoCommand() {
     fs::create_directories(folder_ / "bin");
-    std::ofstream(folder_ / "bin" / "ffmpeg")
-        << "#!/bin/sh\nfor last; do :; done\necho \"$*\" >&2\nexec cat > \"${last#file:}\"\n";
+    write("bin/ffmpeg", "#!/bin/sh\nfor last; do :; done\necho \"$*\" >&2\nexec cat > \"${last#file:}\"\n");
     fs::permissions(folder_ / "bin" / "ffmpeg", fs::perms::owner_all);
   }
-  /// Its exit code; what it says on stderr is in said_. `path`: where programs are looked for.
-  int program(const std::string& arguments, const std::string& path) {
+  /// Its exit code; what it says on stderr is in said_. `places`: where programs are looked for.
+  int program(const std::string& arguments, const std::string& places) {
     const test::Outcome outcome =
-        test::shell("PATH='" + path + "' " + test::kProgram + arguments + " > /dev/null");
+        test::shell("PATH='" + places + "' " + test::kProgram + arguments + " > /dev/null");
     said_ = outcome.err;
     return outcome.code;
   }
-  [[nodiscard]] std::string quoted(const std::string& name) const {
-    return "'" + (folder_ / name).string() + "'";
-  }
+  [[nodiscard]] std::string quoted(const std::string& name) const { return "'" + path(name) + "'"; }
   [[nodiscard]] std::string usual() const { return (folder_ / "bin").string() + ":" + std::getenv("PATH"); }
 
   std::string said_;
@@ -55,16 +50,14 @@ TEST_F(VideoCommand, FilmsALapWithAGhost) {
 TEST_F(VideoCommand, AFilmThatIsStoppedLeavesTheOlderOneAlone) {
   static_cast<void>(program(
       "drive --fast --track oval --laps 1 --set time_limit_s=6 --record " + quoted("a.mcap"), usual()));
-  std::ofstream(folder_ / "lap.gif") << "older";
-  std::ofstream(folder_ / "bin" / "ffmpeg") << "#!/bin/sh\nkill -INT $PPID\nexec cat > /dev/null\n";
+  write("lap.gif", "older");
+  write("bin/ffmpeg", "#!/bin/sh\nkill -INT $PPID\nexec cat > /dev/null\n");
   EXPECT_EQ(program("video " + quoted("a.mcap") + " --pace 0.05 -o " + quoted("lap.gif"), usual()), 1)
       << said_;
   EXPECT_THAT(said_, HasSubstr("stopped: nothing was written"));
-  std::ofstream(folder_ / "bin" / "ffmpeg") << "#!/bin/sh\nexit 1\n";
+  write("bin/ffmpeg", "#!/bin/sh\nexit 1\n");
   EXPECT_EQ(program("video " + quoted("a.mcap") + " -o " + quoted("lap.gif"), usual()), 3) << said_;
-  std::string kept;
-  std::ifstream(folder_ / "lap.gif") >> kept;
-  EXPECT_EQ(kept, "older");
+  EXPECT_EQ(content("lap.gif"), "older");
 }
 
 }  // namespace

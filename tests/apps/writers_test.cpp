@@ -7,26 +7,20 @@
 namespace chicane {
 namespace {
 
-using fs::path;
 using test::chicane_program;
 using test::shell;
 
 /// Results of 40 runs, and what is written of them.
-class Writers : public ::testing::Test {
+class Writers : public ::testing::Test, protected test::Folder {
  protected:
   Writers() {
-    fs::create_directories(folder_);
-    std::ofstream(file("plan.yaml")) << "settings: {preset: pid, laps: 0, time_limit_s: 0.2}\n"
-                                        "axes: [{seed: {from: 1, to: 20, step: 1}}, {speed_mph: [20, 30]}]\n";
-    const auto driven = chicane_program("sweep '" + file("plan.yaml") + "' -o '" + results() + "'");
+    const std::string plan = write("plan.yaml",
+                                   "settings: {preset: pid, laps: 0, time_limit_s: 0.2}\n"
+                                   "axes: [{seed: {from: 1, to: 20, step: 1}}, {speed_mph: [20, 30]}]\n");
+    const auto driven = chicane_program("sweep '" + plan + "' -o '" + results() + "'");
     EXPECT_EQ(driven.code, 0) << driven.err;
   }
-  ~Writers() override { fs::remove_all(folder_); }
-  Writers(const Writers&) = delete;
-  Writers& operator=(const Writers&) = delete;
-
-  [[nodiscard]] std::string file(const std::string& name) const { return (folder_ / name).string(); }
-  [[nodiscard]] std::string results() const { return file("r.jsonl"); }
+  [[nodiscard]] std::string results() const { return path("r.jsonl"); }
   /// Words of the program up to the name of the file, and its ending.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> writers() const {
     return {{"report '" + results() + "' -o ", ".html"},
@@ -34,19 +28,16 @@ class Writers : public ::testing::Test {
             {"merge '" + results() + "' -o ", ".jsonl"},
             {"import tests/data/tracks/course.kml -o ", ".csv"}};
   }
-
-  const path folder_ = test::file_of_test("folder");
 };
 
 TEST_F(Writers, LeaveAFileThatTheyCannotReplace) {
   for (const auto& [words, ending] : writers()) {
-    const std::string old = file("old" + ending);
-    const std::string content(1500, 'o');
-    std::ofstream(old) << content;
+    const std::string whole(1500, 'o');
+    const std::string old = write("old" + ending, whole);
     const auto outcome = shell("(ulimit -f 1; " + test::kProgram + words + "'" + old + "')");
     EXPECT_EQ(outcome.code, 3) << words << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr(old + ": cannot be written: File too large")) << words;
-    EXPECT_EQ(test::read(old), content) << words;
+    EXPECT_EQ(test::content_of(old), whole) << words;
   }
   for (const auto& each : fs::directory_iterator(folder_))
     EXPECT_NE(each.path().extension(), ".part") << each.path();
@@ -54,7 +45,7 @@ TEST_F(Writers, LeaveAFileThatTheyCannotReplace) {
 
 TEST_F(Writers, SayTheSameOfAFolderThatIsNotThere) {
   for (const auto& [words, ending] : writers()) {
-    const std::string nowhere = file("no/such/x" + ending);
+    const std::string nowhere = path("no/such/x" + ending);
     const auto outcome = chicane_program(words + "'" + nowhere + "'");
     EXPECT_EQ(outcome.code, 3) << words << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr(nowhere + ": cannot be written: No such file or directory")) << words;

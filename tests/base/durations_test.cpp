@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/base/deadline.hpp"
 
+#include "chicane/base/duration.hpp"
 #include "chicane/base/random.hpp"
 #include "support/chicane_test.hpp"
 
@@ -55,6 +56,39 @@ TEST(Durations, TakesTheLargestNumberThereIs) {
   EXPECT_EQ(durations.count(), 2U);
   EXPECT_EQ(durations.max(), std::numeric_limits<std::uint64_t>::max());
   EXPECT_EQ(durations.percentile(0.5), 0U);
+}
+
+TEST(Deadline, CountsTheQuestionsOfAllItsCopies) {
+  DeadlineLog log;
+  const Deadline deadline = Deadline::never().counted_in(log);
+  const Deadline copy = deadline;
+  EXPECT_FALSE(deadline.spent());
+  EXPECT_FALSE(copy.spent());
+  EXPECT_EQ(log.asked, 2U);
+  EXPECT_EQ(log.spent_at, 0U);
+}
+
+TEST(Deadline, RemembersTheQuestionThatFoundItSpent) {
+  DeadlineLog log;
+  const Deadline spent = Deadline::after(std::chrono::nanoseconds{0}).counted_in(log);
+  EXPECT_TRUE(spent.spent());
+  EXPECT_TRUE(spent.spent());
+  EXPECT_EQ(log.spent_at, 1U);
+}
+
+TEST(Deadline, AnswersAgainAsItWasLoggedWhateverTheClockSays) {
+  DeadlineLog log{.spent_at = 3};
+  const Deadline again = Deadline::never().counted_in(log);
+  EXPECT_FALSE(again.spent());
+  EXPECT_FALSE(again.spent());
+  EXPECT_TRUE(again.spent());
+  EXPECT_TRUE(again.spent());
+  EXPECT_EQ(log.spent_at, 3U);
+}
+
+TEST(Durations, AreNumbersOfSeconds) {
+  EXPECT_EQ(seconds(std::chrono::milliseconds(1500)), 1.5);
+  EXPECT_EQ(duration(1.5), std::chrono::milliseconds(1500));
 }
 
 }  // namespace

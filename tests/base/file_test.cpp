@@ -20,7 +20,7 @@ class Files : public testing::Test, protected test::Folder {
   }
 };
 
-std::string message(const Result<void>& result) { return result ? "" : result.error().message; }
+using test::refusal_of;
 
 /// As `ulimit -f` does it, while it is there.
 class FileSizeLimit {
@@ -54,7 +54,7 @@ TEST_F(Files, StayWholeWhenTheNewContentIsTooLong) {
   ASSERT_TRUE(write_file(path("a"), "old"));
   {
     const FileSizeLimit limit(1024);
-    EXPECT_EQ(message(write_file(path("a"), std::string(5000, 'x'))),
+    EXPECT_EQ(refusal_of(write_file(path("a"), std::string(5000, 'x'))),
               path("a") + ": cannot be written: File too large");
     EXPECT_TRUE(check_writable(path("a")));
   }
@@ -93,13 +93,14 @@ TEST_F(Files, KeepTheirPermissionsAndTheirLinks) {
 
 TEST_F(Files, SayInOneSentenceWhyTheyCannotBeWritten) {
   const std::string nowhere = path("no/such/a");
-  EXPECT_EQ(message(write_file(nowhere, "x")), nowhere + ": cannot be written: No such file or directory");
-  EXPECT_EQ(message(check_writable(nowhere)), nowhere + ": cannot be written: No such file or directory");
-  EXPECT_EQ(message(write_file(folder_.string(), "x")),
+  EXPECT_EQ(refusal_of(write_file(nowhere, "x")), nowhere + ": cannot be written: No such file or directory");
+  EXPECT_EQ(refusal_of(check_writable(nowhere)), nowhere + ": cannot be written: No such file or directory");
+  EXPECT_EQ(refusal_of(write_file(folder_.string(), "x")),
             folder_.string() + ": cannot be written: Is a directory");
-  EXPECT_EQ(message(check_writable(folder_.string())),
+  EXPECT_EQ(refusal_of(check_writable(folder_.string())),
             folder_.string() + ": cannot be written: Is a directory");
-  EXPECT_EQ(message(write_file("/dev/full", "x")), "/dev/full: cannot be written: No space left on device");
+  EXPECT_EQ(refusal_of(write_file("/dev/full", "x")),
+            "/dev/full: cannot be written: No space left on device");
   EXPECT_EQ(write_file("/dev/full", "x").error().code, ErrorCode::kIo);
 }
 
@@ -107,7 +108,7 @@ TEST_F(Files, OfOthersAreNotReplaced) {
   if (::geteuid() == 0) GTEST_SKIP() << "root may write everything";
   ASSERT_TRUE(write_file(path("a"), "old"));
   fs::permissions(path("a"), fs::perms(0444));
-  EXPECT_EQ(message(write_file(path("a"), "new")), path("a") + ": cannot be written: Permission denied");
+  EXPECT_EQ(refusal_of(write_file(path("a"), "new")), path("a") + ": cannot be written: Permission denied");
   fs::permissions(path("a"), fs::perms(0644));
   fs::permissions(folder_, fs::perms(0555));
   EXPECT_TRUE(write_file(path("a"), "new")) << "its folder takes no new file: written in place";

@@ -7,26 +7,12 @@
 namespace chicane {
 namespace {
 
-TEST(Latest, IsEmptyAtFirst) {
+TEST(Latest, GivesTheNewestValueOnce) {
   Latest<int> latest;
   int value = 7;
   EXPECT_FALSE(latest.take(value));
   EXPECT_EQ(value, 7);
-}
-
-TEST(Latest, GivesEachValueOnce) {
-  Latest<int> latest;
-  int value = 0;
-  latest.put(1);
-  EXPECT_TRUE(latest.take(value));
-  EXPECT_EQ(value, 1);
-  EXPECT_FALSE(latest.take(value));
-}
-
-TEST(Latest, NewestWins) {
-  Latest<int> latest;
   for (int i = 1; i <= 5; ++i) latest.put(i);
-  int value = 0;
   EXPECT_TRUE(latest.take(value));
   EXPECT_EQ(value, 5);
   EXPECT_FALSE(latest.take(value));

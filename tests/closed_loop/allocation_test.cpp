@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Two laps, not one step: the second closes the map, smooths the line round the whole track and plans anew.
-#include <gtest/gtest.h>
-
-#include <string>
 
 #include "closed_loop/drive.hpp"
 #include "support/alloc_guard.hpp"

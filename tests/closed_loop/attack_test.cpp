@@ -2,13 +2,6 @@
 // A sample of the attacks of guard_attack.cpp, which drives all of them.
 #include "closed_loop/attack.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "support/results.hpp"
 #include "support/runs.hpp"
 #include "support/slow_tests.hpp"

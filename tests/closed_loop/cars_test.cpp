@@ -1,14 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What every file in data/cars/ promises: a car of the shelf is a plant and a model of it that agree, and
 // drives.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <memory>
-#include <string>
-#include <vector>
 
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/make.hpp"
@@ -69,23 +61,6 @@ TEST_P(EveryCar, TurnsAsItsModelPredicts) {
     // in full size.
     EXPECT_LT(mismatch.yaw_rate, scenario_.vehicle.scale < 1.0 ? 0.25 : 0.12) << v;
   }
-}
-
-TEST_P(EveryCar, TurnsLeftAsItTurnsRight) {
-  const std::unique_ptr<sim::Plant> mirrored = std::move(*make_plant(scenario_));
-  const double v = 15.0 * std::sqrt(scenario_.vehicle.scale);
-  plant_->reset({}, v);
-  mirrored->reset({}, v);
-  // The helper of `udacity` leaves a step out where the heading passes +y, as the original.
-  for (int i = 0; i < 1500 && std::fabs(plant_->state().psi) < 1.2; ++i) {
-    const double steer = 0.5 * scenario_.vehicle.steer_limit * std::sin(0.01 * i);
-    const double throttle = 0.6 * std::cos(0.007 * i);
-    plant_->advance({steer, throttle});
-    mirrored->advance({-steer, throttle});
-  }
-  EXPECT_DOUBLE_EQ(plant_->state().x, mirrored->state().x);
-  EXPECT_DOUBLE_EQ(plant_->state().y, -mirrored->state().y);
-  EXPECT_DOUBLE_EQ(plant_->state().r, -mirrored->state().r);
 }
 
 class LapsOf : public testing::TestWithParam<std::string> {};

@@ -1,12 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Roads that cross themselves, and an open one.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <string>
 
 #include "chicane/base/math.hpp"
 #include "closed_loop/drive.hpp"

@@ -1,13 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "chicane/base/math.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
@@ -23,8 +16,10 @@ inline telemetry::RunSummary drive(const Settings& settings) {
   return test::drive(test::scenario_of(settings));
 }
 
-/// Result of a run that has to end completed and without leaving the road.
-inline telemetry::RunSummary drive_cleanly(const Settings& settings) {
+/// Result of a run that has to end completed and without leaving the road; of a setting given twice the last
+/// holds.
+inline telemetry::RunSummary drive_cleanly(Settings settings, const Settings& more = {}) {
+  settings.insert(settings.end(), more.begin(), more.end());
   const telemetry::RunSummary run = drive(settings);
   std::string what;
   for (const auto& [key, value] : settings) what += key + "=" + value + " ";

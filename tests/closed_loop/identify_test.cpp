@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Cars that are otherwise than told, identified while they drive (docs/identification.md, "During a run").
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
 
 #include "closed_loop/drive.hpp"
 

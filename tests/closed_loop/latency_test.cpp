@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
 
 #include "closed_loop/drive.hpp"
 
@@ -37,28 +36,27 @@ TEST(Latency, MakesThePresetsThatSurviveItTrackWorse) {
   EXPECT_LT(error("delay-in-model", "inside-model"), 0.85 * error("delay-in-model", "none"));
 }
 
+/// Two clean laps with `default`.
+telemetry::RunSummary default_laps(const char* latency_ms, const char* period_ms, const Settings& more = {}) {
+  return drive_cleanly({{"preset", "default"},
+                        {"track", "lakeside"},
+                        {"laps", "2"},
+                        {"latency_ms", latency_ms},
+                        {"control_period_ms", period_ms}},
+                       more);
+}
+
 TEST(Latency, CostsTheDefaultControllerHardlyAnyTime) {
   const auto flying_lap = [](const char* latency_ms, const char* period_ms) {
-    const auto run =
-        drive_cleanly({{"preset", "default"},
-                       {"track", "lakeside"},
-                       {"laps", "2"},
-                       {"guard.mode", "off"},  // the guard slows a car with three commands in a second
-                       {"latency_ms", latency_ms},
-                       {"control_period_ms", period_ms}});
-    return run.laps.size() == 2U ? run.laps[1].lap_time : 1e9;
+    // The guard slows a car with three commands in a second.
+    return default_laps(latency_ms, period_ms, {{"guard.mode", "off"}}).laps.at(1).lap_time;
   };
   EXPECT_LT(flying_lap("300", "320"), 1.03 * flying_lap("0", "20"));
 }
 
 TEST(Latency, KeepsTheDefaultControllerOnTheRoadWithTheGuardOn) {
-  for (const auto& [latency, period] : {std::pair{"300", "320"}, {"0", "20"}, {"400", "40"}}) {
-    drive_cleanly({{"preset", "default"},
-                   {"track", "lakeside"},
-                   {"laps", "2"},
-                   {"latency_ms", latency},
-                   {"control_period_ms", period}});
-  }
+  for (const auto& [latency, period] : {std::pair{"300", "320"}, {"0", "20"}, {"400", "40"}})
+    default_laps(latency, period);
 }
 
 }  // namespace

@@ -2,20 +2,8 @@
 // A healthy car whose measurements agree moves again: whatever its simulator's clock, whatever put it
 // elsewhere, whatever fault has ended (docs/safety.md, "The conditions").
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <memory>
 #include <ostream>
-#include <sstream>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
@@ -329,47 +317,27 @@ TEST(MovesAgain, FromWhereItStood) {
   }
 }
 
+/// Separated by spaces.
+std::vector<std::string> words(const std::string& text) {
+  std::istringstream all(text);
+  return {std::istream_iterator<std::string>(all), {}};
+}
+
 FaultRun draw(Random& chance) {
   const auto pick = [&](const auto& names) { return names[chance.bits() % std::size(names)]; };
-  static constexpr const char* kRoads[] = {"lakeside",
-                                           "original-lake",
-                                           "oval",
-                                           "hairpins",
-                                           "speedway",
-                                           "stage",
-                                           "utm.csv",
-                                           "clockwise.csv",
-                                           "course.xodr",
-                                           "course.geojson",
-                                           "course.kml",
-                                           "course.osm",
-                                           "cones.csv",
-                                           "cones.sdf",
-                                           "fssim.yaml",
-                                           "three_laps.gpx",
-                                           "tum_centre_line.csv",
-                                           "matlab_writetable.csv"};
-  static constexpr const char* kCars[] = {"udacity", "road-car",        "bmw-320i", "vw-vanagon",
-                                          "indy",    "formula-student", "tum-1200"};
-  static constexpr const char* kNarrowRoads[] = {"oval",
-                                                 "hairpins",
-                                                 "lakeside",
-                                                 "speedway",
-                                                 "f1tenth_centerline.csv",
-                                                 "gym_waypoints.csv",
-                                                 "../maps/ring.yaml",
-                                                 "../maps/oval.yaml",
-                                                 "../maps/bean.yaml",
-                                                 "../maps/clover.yaml",
-                                                 "../maps/chicane.yaml",
-                                                 "../maps/hairpins.yaml",
-                                                 "../maps/long.yaml",
-                                                 "../maps/turned.yaml",
-                                                 "../maps/corridors.yaml"};
-  static constexpr const char* kModelCars[] = {"f1tenth", "orca-1-43"};
-  static constexpr const char* kPresets[] = {"default",         "default",     "pid",     "measured-latency",
-                                             "sixty-mph",       "weighted",    "stanley", "delay-in-model",
-                                             "fast-short-step", "pure-pursuit"};
+  static const auto kRoads = words(
+      "lakeside original-lake oval hairpins speedway stage utm.csv clockwise.csv course.xodr course.geojson "
+      "course.kml course.osm cones.csv cones.sdf fssim.yaml three_laps.gpx tum_centre_line.csv "
+      "matlab_writetable.csv");
+  static const auto kCars = words("udacity road-car bmw-320i vw-vanagon indy formula-student tum-1200");
+  static const auto kNarrowRoads = words(
+      "oval hairpins lakeside speedway f1tenth_centerline.csv gym_waypoints.csv ../maps/ring.yaml "
+      "../maps/oval.yaml ../maps/bean.yaml ../maps/clover.yaml ../maps/chicane.yaml ../maps/hairpins.yaml "
+      "../maps/long.yaml ../maps/turned.yaml ../maps/corridors.yaml");
+  static const auto kModelCars = words("f1tenth orca-1-43");
+  static const auto kPresets = words(
+      "default default pid measured-latency sixty-mph weighted stanley delay-in-model fast-short-step "
+      "pure-pursuit");
   static constexpr double kLasts[] = {0.3, 1.0, 2.0, 5.0};
   const bool is_small = chance.uniform() < 0.25;
   const std::string track = is_small ? pick(kNarrowRoads) : pick(kRoads);

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
 
-#include <cstdint>
 #include <random>
-#include <string>
-#include <vector>
 
 #include "chicane/base/random.hpp"
 #include "closed_loop/drive.hpp"
@@ -28,21 +24,17 @@ constexpr Claim kClaims[] = {{"measured-latency", 38.0, 42.0}, {"fast-short-step
 constexpr double kClear = 0.25;       // [m] to the edge without the guard, which wants 0.2
 constexpr std::uint64_t kRarely = 2;  // steps of a run: `default` is slowed for a silence in one of 1500
 
-void expect_clean_laps(const telemetry::RunSummary& run) {
-  EXPECT_TRUE(run.completed) << run.preset << " on " << run.track << ": " << run.end_reason;
-  EXPECT_EQ(run.off_track_events, 0) << run.preset << " on " << run.track;
-  EXPECT_EQ(run.fallbacks, 0U) << run.preset << " on " << run.track;
+/// Two laps of lakeside without the guard.
+telemetry::RunSummary drive_alone(const char* preset, const Settings& more = {}) {
+  return drive_cleanly({{"guard.mode", "off"}, {"preset", preset}, {"track", "lakeside"}, {"laps", "2"}},
+                       more);
 }
 
 TEST(Presets, LapCleanlyAtTheSpeedTheyClaim) {
   for (const char* track : {"lakeside", "original-lake"})
     for (const Claim& claim : kClaims) {
-      const auto run = drive({{"guard.mode", "off"},
-                              {"preset", claim.preset},
-                              {"track", track},
-                              {"laps", "2"},
-                              {"latency_ms", "100"}});
-      expect_clean_laps(run);
+      const auto run = drive_alone(claim.preset, {{"track", track}, {"latency_ms", "100"}});
+      EXPECT_EQ(run.fallbacks, 0U) << claim.preset << " on " << track;
       EXPECT_GE(top_mph(run), claim.low_mph) << claim.preset << " on " << track;
       EXPECT_LE(top_mph(run), claim.high_mph) << claim.preset << " on " << track;
     }
@@ -115,56 +107,13 @@ TEST(Presets, StayOnTheRoadWhenTheAnswerIsLateOrSlow) {
   for (const char* preset :
        {"measured-latency", "fast-short-step", "sixty-mph", "weighted", "delay-in-model"}) {
     for (const auto& [latency, period] :
-         {std::pair{"100", "100"}, {"110", "130"}, {"120", "140"}, {"100", "150"}}) {
-      drive_cleanly({{"guard.mode", "off"},
-                     {"preset", preset},
-                     {"track", "lakeside"},
-                     {"laps", "2"},
-                     {"latency_ms", latency},
-                     {"control_period_ms", period}});
-    }
+         {std::pair{"100", "100"}, {"110", "130"}, {"120", "140"}, {"100", "150"}})
+      drive_alone(preset, {{"latency_ms", latency}, {"control_period_ms", period}});
   }
-}
-
-TEST(Presets, MeasuredLatencyWorksToFifty) {
-  const auto run = drive({{"guard.mode", "off"},
-                          {"preset", "measured-latency"},
-                          {"track", "lakeside"},
-                          {"laps", "2"},
-                          {"cubic_mpc.speed_reference_mps", "22.352"}});
-  expect_clean_laps(run);
-  EXPECT_GE(top_mph(run), 49.0);
-}
-
-/// On the lake that it was written for; on lakeside it leaves the road (docs/measured/claims.md, A6).
-TEST(Presets, MeasuredLatencyLapsTheOriginalLakeWithBothErrorsAsWritten) {
-  for (const char* speed_mps : {"13.4112", "17.8816", "22.352"}) {  // 30, 40, 50 mph
-    SCOPED_TRACE(speed_mps);
-    expect_clean_laps(drive({{"guard.mode", "off"},
-                             {"preset", "measured-latency"},
-                             {"track", "original-lake"},
-                             {"laps", "3"},
-                             {"cubic_mpc.speed_reference_mps", speed_mps},
-                             {"cubic_mpc.lateral_error_integrated", "true"}}));
-  }
-}
-
-TEST(Presets, FastShortStepTakesItsSpeedFromTheWeightOnAcceleration) {
-  const auto slow =
-      drive({{"guard.mode", "off"}, {"preset", "fast-short-step"}, {"track", "lakeside"}, {"laps", "2"}});
-  const auto fast = drive({{"guard.mode", "off"},
-                           {"preset", "fast-short-step"},
-                           {"track", "lakeside"},
-                           {"laps", "2"},
-                           {"cubic_mpc.weight_throttle", "48"}});
-  expect_clean_laps(fast);
-  EXPECT_LT(slow.total.rms_lateral_error, 0.5);  // "in the centre of the lane"
-  EXPECT_GT(top_mph(fast), top_mph(slow) + 15.0);
 }
 
 TEST(Presets, WeightedSlowsInCurvesAndDelayInModelForThem) {
-  const auto weighted =
-      drive({{"guard.mode", "off"}, {"preset", "weighted"}, {"track", "lakeside"}, {"laps", "2"}});
+  const auto weighted = drive_alone("weighted");
   ASSERT_EQ(weighted.laps.size(), 2U);
   EXPECT_LT(weighted.laps[1].mean_speed, 0.95 * weighted.laps[1].top_speed);
   const auto delayed = drive({{"preset", "delay-in-model"}, {"track", "lakeside"}, {"laps", "3"}});

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The five presets from standstill, 1.5 m beside the line: where they steer, and whether they come back.
-#include <gtest/gtest.h>
 #include <unistd.h>
-
-#include <cmath>
-#include <filesystem>
 
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"

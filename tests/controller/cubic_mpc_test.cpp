@@ -2,40 +2,18 @@
 #include "chicane/controller/cubic_mpc.hpp"
 
 #include "chicane/base/math.hpp"
+#include "controller/every_controller.hpp"
 #include "controller/sample_road.hpp"
-#include "support/chicane_test.hpp"
-#include "support/guarded.hpp"
 
 namespace chicane::controller {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 const model::VehicleParams kCar;
 
 std::unique_ptr<test::Guarded> make(const CubicMpcOptions& options) {
   auto controller = make_cubic_mpc(options, kCar);
   EXPECT_TRUE(controller.has_value()) << controller.error().message;
   return std::make_unique<test::Guarded>(std::move(*controller), kCar);
-}
-
-/// The handlings of latency, both steering signs and both ways to the car's frame, in all combinations.
-std::vector<CubicMpcOptions> all_variants() {
-  std::vector<CubicMpcOptions> variants;
-  for (const auto handling :
-       {LatencyHandling::kNone, LatencyHandling::kRollForward, LatencyHandling::kMeasured,
-        LatencyHandling::kPositionOnly, LatencyHandling::kInsideModel}) {
-    for (const bool sign : {false, true}) {
-      for (const bool polar : {false, true}) {
-        CubicMpcOptions options;
-        options.latency_handling = handling;
-        options.steering_right_positive = sign;
-        options.polar_waypoints = polar;
-        options.weight_speed_steer = 0.5;
-        variants.push_back(options);
-      }
-    }
-  }
-  return variants;
 }
 
 void expect_bounded(const StepResult& result) {
@@ -45,7 +23,7 @@ void expect_bounded(const StepResult& result) {
 }
 
 TEST(CubicMpc, SolvesEveryVariantAndSteersBackToTheLine) {
-  for (const auto& options : all_variants()) {
+  for (const auto& options : cubic_variants()) {
     const auto controller = make(options);
     const test::Sent& result = controller->step(on_a_left_bend(), Deadline::never());
     EXPECT_EQ(result.report.solve.status, solver::SolveStatus::kOptimal);
@@ -55,25 +33,6 @@ TEST(CubicMpc, SolvesEveryVariantAndSteersBackToTheLine) {
               0.06);  // 80 m ask for 0.033 rad; half a metre left of the line, less than that
     EXPECT_NEAR(result.report.lateral_error, 0.5, 0.06);  // least squares miss 60 m of the circle by 4.5 cm
     EXPECT_NEAR(result.report.heading_error, 0.0, 0.01);
-  }
-}
-
-TEST(CubicMpc, MirrorsWithTheWorld) {
-  for (const auto& options : all_variants()) {
-    const model::Command left = make(options)->step(on_a_left_bend(), Deadline::never()).command;
-    const model::Command right = make(options)->step(mirrored(on_a_left_bend()), Deadline::never()).command;
-    EXPECT_NEAR(left.steer, -right.steer, 1e-6);  // the solver's tolerance
-    EXPECT_NEAR(left.throttle, right.throttle, 1e-6);
-  }
-}
-
-TEST(CubicMpc, DoesNotCareWhereInTheWorldItDrives) {
-  for (const auto& options : all_variants()) {
-    const model::Command here = make(options)->step(on_a_left_bend(), Deadline::never()).command;
-    const model::Command there =
-        make(options)->step(on_a_left_bend(-321.0, 99.0, 2.5), Deadline::never()).command;
-    EXPECT_NEAR(here.steer, there.steer, 1e-6);
-    EXPECT_NEAR(here.throttle, there.throttle, 1e-6);
   }
 }
 
@@ -143,28 +102,6 @@ TEST(CubicMpc, SeesFartherAndSteersLessWithTheSpeedInMilesPerHour) {
   EXPECT_NEAR(reach(b.plan) / reach(a.plan), 2.2369, 1e-3);
 }
 
-TEST(CubicMpc, AnswersAlsoWithoutAUsableMeasurement) {
-  for (const auto& options : all_variants()) {
-    const auto controller = make(options);
-    std::vector<model::Measurement> hostile(9, on_a_left_bend());
-    hostile[0].x = kNaN;
-    hostile[1].psi = kNaN;
-    hostile[2].speed = std::numeric_limits<double>::infinity();
-    hostile[3].time = kNaN;
-    hostile[4].waypoint_count = 0;
-    hostile[5].waypoint_count = -3;
-    hostile[6].steer = kNaN;
-    hostile[7].speed = 1e300;
-    for (Vec2& point : hostile[8].waypoints) point = {kNaN, kNaN};
-    for (const auto& now : hostile) {
-      const test::Sent& result = controller->step(now, Deadline::never());
-      expect_bounded(result);
-      EXPECT_NE(result.guard.rung, Rung::kController);
-      EXPECT_FALSE(usable(result.report.solve.status));
-    }
-  }
-}
-
 TEST(CubicMpc, UsesTheLastPlanOnceTheLineIsLostAndRecoversWithIt) {
   const auto controller = make(CubicMpcOptions{});
   model::Measurement now = on_a_left_bend();
@@ -221,16 +158,6 @@ TEST(CubicMpc, TakesTheLongestHorizon) {
   EXPECT_EQ(result.plan.size, 200);
 }
 
-TEST(CubicMpc, ForgetsOnReset) {
-  const auto controller = make(CubicMpcOptions{});
-  const model::Command first = controller->step(on_a_left_bend(), Deadline::never()).command;
-  (void)controller->step(on_a_left_bend(5.0, 1.0, 0.1), Deadline::never());
-  controller->reset();
-  const model::Command again = controller->step(on_a_left_bend(), Deadline::never()).command;
-  EXPECT_EQ(first.steer, again.steer);  // bit for bit: nothing remembered
-  EXPECT_EQ(first.throttle, again.throttle);
-}
-
 TEST(CubicMpc, SaysWhichOptionIsMissingBesideAnother) {
   CubicMpcOptions options{.heading_error_integrated = false, .lateral_error_integrated = true};
   const std::vector<OptionContradiction> found = CubicMpcEntry::contradictions(options);
@@ -241,22 +168,6 @@ TEST(CubicMpc, SaysWhichOptionIsMissingBesideAnother) {
       << found[0].message;
   options.heading_error_integrated = true;
   EXPECT_TRUE(CubicMpcEntry::contradictions(options).empty());
-}
-
-TEST(CubicMpc, RefusesOptionsOutOfRangeByName) {
-  const auto refused = [](auto change, const char* name) {
-    CubicMpcOptions options;
-    change(options);
-    const auto controller = make_cubic_mpc(options, kCar);
-    ASSERT_FALSE(controller.has_value()) << name;
-    EXPECT_NE(controller.error().message.find(name), std::string::npos) << controller.error().message;
-  };
-  refused([](auto& o) { o.horizon_steps = 1; }, "horizon_steps");
-  refused([](auto& o) { o.horizon_steps = 201; }, "horizon_steps");
-  refused([](auto& o) { o.step_length = 0.0; }, "step_length");
-  refused([](auto& o) { o.speed_reference = kNaN; }, "speed_reference");
-  refused([](auto& o) { o.latency = 0.6; }, "latency");
-  refused([](auto& o) { o.weight_steer_change = -1.0; }, "weight_steer_change");
 }
 
 }  // namespace

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/controller/cubic_problem.hpp"
 
+#include <Eigen/QR>
+
 #include "chicane/base/instruction_set.hpp"
-#include "chicane/base/jet.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
 #include "chicane/controller/cubic_solver.hpp"
 #include "chicane/solver/ocp_solver.hpp"
-#include "controller/dense_cubic_problem.hpp"
 #include "support/chicane_test.hpp"
 
 namespace chicane::controller {
@@ -24,18 +25,6 @@ CubicProblem sample_problem(LatencyHandling handling = LatencyHandling::kNone) {
   CubicProblem problem{options, model::VehicleParams{}};
   problem.line = {{0.4, -0.05, 0.004, -3e-5}};
   return problem;
-}
-
-State next(const CubicProblem& problem, const State& x, const Input& u) {
-  return solver::next_state(problem, 1, x, u);
-}
-
-TEST(CubicProblem, DrivesAStageByTheInputsOfTheStageBeforeInsideTheModel) {
-  const State late = next(sample_problem(LatencyHandling::kInsideModel), kState, {0.05, 0.8});
-  const State direct = next(sample_problem(), kState, {0.2, -0.5});
-  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(late[i], direct[i]) << i;
-  EXPECT_EQ(late[5], 0.05);
-  EXPECT_EQ(late[6], 0.8);
 }
 
 double half_square(const auto& residual) {
@@ -82,55 +71,88 @@ std::vector<CubicProblem> all_variants(Random& random) {
   return problems;
 }
 
-/// By all states and inputs.
-std::array<double, 9> slopes(const auto& value) {
-  std::array<double, 9> d{};
-  jet::repeat<9>([&](auto i) { d[i] = jet::number<double>(jet::slope<i>(value)); });
-  return d;
-}
+/// CubicProblem as it is written down, cte among the states and derivatives dense: what the structured form
+/// must agree with. State x, y, ψ, v, cte, eψ, δ⁻, a⁻.
+struct DenseCubicProblem {
+  static constexpr int kNx = 8;
+  static constexpr int kNu = 2;
+  static constexpr int kNr = 8;
+  static constexpr int kNe = 3;
+  static constexpr int kNc = 0;
+  static constexpr bool kRealTime = true;
+  enum StateIndex : std::size_t { kX, kY, kPsi, kV, kCte, kEpsi, kLastSteer, kLastThrottle };
+  enum InputIndex : std::size_t { kSteer, kThrottle };
+  template <class T>
+  using States = std::array<T, kNx>;
+  template <class T>
+  using Inputs = std::array<T, kNu>;
 
-TEST(CubicProblem, HasTheDerivativesThatDifferencesShow) {
-  Random random{5};
-  for (const CubicProblem& p : all_variants(random)) {
-    for (int turn = 0; turn < 20; ++turn) {
-      std::array<double, 9> z{};
-      for (double& value : z) value = random.uniform(-0.4, 0.4);
-      z[0] *= 100.0;
-      z[3] = random.uniform(0.0, 50.0);
-      const auto evaluate = [&](const std::array<double, 9>& at) {
-        const State x{at[0], at[1], at[2], at[3], at[4], at[5], at[6]};
-        const Input u{at[7], at[8]};
-        std::vector<double> values;
-        for (const double value : next(p, x, u)) values.push_back(value);
-        for (const double value : solver::to_array<double>(p.residual(1, x, u))) values.push_back(value);
-        return values;
-      };
-      // As the solver sees them: every variable of a type of its own.
-      const auto x = std::make_tuple(seed<1, 0>(z[0]), seed<1, 1>(z[1]), seed<1, 2>(z[2]), seed<1, 3>(z[3]),
-                                     seed<1, 4>(z[4]), seed<1, 5>(z[5]), seed<1, 6>(z[6]));
-      const auto u = std::make_tuple(seed<1, 7>(z[7]), seed<1, 8>(z[8]));
-      std::vector<std::array<double, 9>> rows;
-      const auto collect = [&](const auto&... values) { (rows.push_back(slopes(values)), ...); };
-      std::apply(collect, p.dynamics(1, x, u));
-      std::apply(collect, p.residual(1, x, u));
-      for (std::size_t j = 0; j < 9; ++j) {
-        const double h = 1e-6 * std::max(1.0, std::fabs(z[j]));
-        auto plus = z;
-        auto minus = z;
-        plus[j] += h;
-        minus[j] -= h;
-        const auto a = evaluate(plus);
-        const auto b = evaluate(minus);
-        ASSERT_EQ(rows.size(), a.size());
-        for (std::size_t i = 0; i < rows.size(); ++i) {
-          // 1e-6 relative: rounding of central differences with h = 1e-6.
-          ASSERT_NEAR(rows[i][j], (a[i] - b[i]) / (2.0 * h), 1e-6 * (1.0 + std::fabs(rows[i][j])))
-              << i << ' ' << j;
-        }
-      }
-    }
+  explicit DenseCubicProblem(const CubicProblem& structured) noexcept
+      : dt{structured.dt},
+        turn_per_metre{structured.turn_per_metre},
+        steer_limit{structured.steer_limit},
+        speed_reference{structured.speed_reference},
+        error_sign{structured.error_sign},
+        is_integrated{structured.heading_reach == 0.0},
+        is_lateral_recursive{structured.is_lateral_recursive},
+        acts_late{structured.acts_late},
+        root{structured.root},
+        line{structured.line} {}
+
+  [[nodiscard]] static States<double> with_lateral_error(const CubicProblem::State& x, double cte) {
+    return {x[0], x[1], x[2], x[3], cte, x[4], x[5], x[6]};
   }
-}
+
+  /// Equations 1 to 6: forward Euler, with the described recursions of both errors.
+  template <class T>
+  [[nodiscard]] States<T> dynamics(int, const States<T>& x, const Inputs<T>& u) const {
+    const T steer = acts_late ? x[kLastSteer] : u[kSteer];
+    const T throttle = acts_late ? x[kLastThrottle] : u[kThrottle];
+    const T turn = x[kV] * steer * (turn_per_metre * dt);
+    return {
+        x[kX] + x[kV] * cos(x[kPsi]) * dt,
+        x[kY] + x[kV] * sin(x[kPsi]) * dt,
+        x[kPsi] + turn,
+        x[kV] + throttle * dt,
+        (is_lateral_recursive ? x[kCte] : line.at(x[kX]) - x[kY]) + x[kV] * sin(x[kEpsi]) * (error_sign * dt),
+        (is_integrated ? x[kEpsi] : x[kPsi] - atan(line.slope(x[kX]))) + turn,
+        u[kSteer],
+        u[kThrottle]};
+  }
+
+  /// Equation 7, one stage. The first stage has no change to pay for, as described.
+  template <class T>
+  [[nodiscard]] std::array<T, kNr> residual(int k, const States<T>& x, const Inputs<T>& u) const {
+    const double is_change = k > 0 ? 1.0 : 0.0;
+    return {x[kCte] * root[0],
+            x[kEpsi] * root[1],
+            (x[kV] - speed_reference) * root[2],
+            u[kSteer] * root[3],
+            u[kThrottle] * root[4],
+            (u[kSteer] - x[kLastSteer]) * (is_change * root[5]),
+            (u[kThrottle] - x[kLastThrottle]) * (is_change * root[6]),
+            x[kV] * u[kSteer] * root[7]};
+  }
+
+  template <class T>
+  [[nodiscard]] std::array<T, kNe> terminal_residual(const States<T>& x) const {
+    return {x[kCte] * root[0], x[kEpsi] * root[1], (x[kV] - speed_reference) * root[2]};
+  }
+
+  [[nodiscard]] Inputs<double> input_lower(int) const { return {-steer_limit, -1.0}; }
+  [[nodiscard]] Inputs<double> input_upper(int) const { return {steer_limit, 1.0}; }
+
+  double dt;
+  double turn_per_metre;
+  double steer_limit;
+  double speed_reference;
+  double error_sign;
+  bool is_integrated;         ///< the heading error, from step to step
+  bool is_lateral_recursive;  ///< the lateral error, from step to step
+  bool acts_late;
+  std::array<double, kNr> root;
+  Cubic line;
+};
 
 solver::SolveReport solve(const CubicProblem& problem, const State& start, CubicTrajectory& answer) {
   return with_instructions(chosen_instruction_set(), [&](auto instructions) {
@@ -170,29 +192,6 @@ TEST(CubicProblem, HasTheOptimaOfTheDenseForm) {
     }
   }
   EXPECT_GE(compared, 180) << "of 192";
-}
-
-TEST(CubicProblem, HasMirroredOptima) {
-  const auto left = std::make_unique<CubicTrajectory>();
-  const auto right = std::make_unique<CubicTrajectory>();
-  Random random{3};
-  for (CubicProblem problem : all_variants(random)) {
-    State start{0.0, 0.0, 0.0, 15.0, -std::atan(problem.line.slope(0.0)), 0.05, 0.3};
-    left->horizon = right->horizon = 9;
-    left->u.fill({});
-    right->u.fill({});
-    (void)solve(problem, start, *left);
-    Cubic mirrored = problem.line;
-    for (double& c : mirrored.c) c = -c;
-    problem.follow(mirrored);
-    start[CubicProblem::kEpsi] = -start[CubicProblem::kEpsi];
-    start[CubicProblem::kLastSteer] = -start[CubicProblem::kLastSteer];
-    (void)solve(problem, start, *right);
-    for (std::size_t k = 0; k < 9; ++k) {
-      EXPECT_EQ(left->u[k][0], -right->u[k][0]) << k;  // the same arithmetic
-      EXPECT_EQ(left->u[k][1], right->u[k][1]) << k;
-    }
-  }
 }
 
 std::vector<std::vector<double>> read_csv(const std::string& path) {
@@ -251,6 +250,241 @@ TEST(CubicProblem, HasTheOptimaThatIpoptFinds) {
   EXPECT_LE(unequal, compared / 100);
   EXPECT_LE(unsolved, compared / 100)
       << "cold starts at 30 m/s are harder than any step of a running controller";
+}
+
+constexpr double kRounding = 1e-14;  // of a few operations on numbers of magnitude 10
+const Cubic kLine{{0.5, 0.1, -0.02, 0.001}};
+const std::array<double, 7> kDescribed{2.0, 0.3, 0.05, 12.0, -0.04, 0.0, 0.0};
+
+DescribedModel<Cubic> model(double sign = 1.0) {
+  return {.line = kLine, .dt = 0.1, .turn_per_length = sign * 0.1 / 2.67};
+}
+
+TEST(DescribedModel, MovesByForwardEuler) {
+  const std::array input{0.2, -0.5};
+  const auto [x, y, psi, v, epsi, steer, acceleration] = model().next(kDescribed, input, input);
+  const double turn = 12.0 * 0.2 * 0.1 / 2.67;
+  const double slope = 0.1 + 2.0 * (-0.02) * 2.0 + 3.0 * 0.001 * 4.0;
+  EXPECT_NEAR(x, 2.0 + 1.2 * std::cos(0.05), kRounding);
+  EXPECT_NEAR(y, 0.3 + 1.2 * std::sin(0.05), kRounding);
+  EXPECT_NEAR(psi, 0.05 + turn, kRounding);
+  EXPECT_NEAR(v, 12.0 - 0.05, kRounding);
+  EXPECT_NEAR(epsi, 0.05 - std::atan(slope) + turn, kRounding);
+  EXPECT_EQ(steer, 0.2);
+  EXPECT_EQ(acceleration, -0.5);
+}
+
+TEST(DescribedModel, IsMovedByWhatActsAndKeepsWhatIsAsked) {
+  const auto [x, y, psi, v, epsi, steer, acceleration] =
+      model().next(kDescribed, std::array{0.0, 1.0}, std::array{0.2, -0.5});
+  EXPECT_EQ(psi, 0.05);
+  EXPECT_NEAR(v, 12.1, kRounding);
+  EXPECT_EQ(steer, 0.2);
+  EXPECT_EQ(acceleration, -0.5);
+}
+
+TEST(DescribedModel, TurnsTheOtherWayWithTheOtherSign) {
+  const std::array input{0.2, 0.0};
+  const double left = std::get<2>(model(1.0).next(kDescribed, input, input)) - 0.05;
+  const double right = std::get<2>(model(-1.0).next(kDescribed, input, input)) - 0.05;
+  EXPECT_GT(left, 0.0);
+  EXPECT_NEAR(right, -left, kRounding);
+}
+
+constexpr double kLength = 2.67;
+
+/// Heading along W's y at 20 m/s, wheel 0.1 rad to the left, half throttle.
+model::Measurement moving() {
+  model::Measurement now;
+  now.x = 3.0;
+  now.y = 4.0;
+  now.psi = 0.5 * kPi;
+  now.speed = 20.0;
+  now.steer = 0.1;
+  now.throttle = 0.5;
+  now.delay = 0.14;
+  return now;
+}
+
+TEST(RollForward, MovesWhatItsHandlingSays) {
+  struct Row {
+    LatencyHandling handling;
+    double y, psi, speed, compensated;
+  };
+  for (const auto& [handling, y, psi, speed, compensated] :
+       {Row{LatencyHandling::kNone, 4.0, 0.0, 20.0, 0.0},
+        {LatencyHandling::kInsideModel, 4.0, 0.0, 20.0, 0.0},
+        {LatencyHandling::kPositionOnly, 6.0, 0.0, 20.0, 0.1},
+        {LatencyHandling::kRollForward, 6.0, 20.0 * 0.1 / kLength * 0.1, 20.05, 0.1}}) {
+    SCOPED_TRACE(static_cast<int>(handling));
+    RollForward roll{handling, 0.1, kLength};
+    const Motion start = roll.predict(moving());
+    EXPECT_NEAR(start.pose.x, 3.0, 1e-12);
+    EXPECT_NEAR(start.pose.y, y, 1e-12);
+    EXPECT_NEAR(start.pose.psi, 0.5 * kPi + psi, 1e-12);
+    EXPECT_NEAR(start.speed, speed, 1e-12);
+    EXPECT_EQ(roll.compensated(), compensated);
+  }
+}
+
+TEST(RollForward, AveragesTheMeasuredLatencyWithTheValueBefore) {
+  RollForward roll{LatencyHandling::kMeasured, 0.1, kLength};
+  const Motion start = roll.predict(moving());
+  const double latency = 0.5 * (0.1 + 0.14);
+  EXPECT_DOUBLE_EQ(roll.compensated(), latency);
+  const double curvature = std::tan(0.1) / kLength;
+  EXPECT_NEAR(start.pose.y, 4.0 + 20.0 * latency, 1e-12);
+  EXPECT_NEAR(start.pose.psi,
+              0.5 * kPi + 20.0 * curvature * latency + 0.5 * 0.5 * curvature * latency * latency, 1e-12);
+  EXPECT_NEAR(start.speed, 20.0 + 0.5 * latency, 1e-12);
+  (void)roll.predict(moving());
+  EXPECT_DOUBLE_EQ(roll.compensated(), 0.5 * (latency + 0.14));
+  roll.reset();
+  EXPECT_DOUBLE_EQ(roll.compensated(), 0.1);
+}
+
+TEST(RollForward, LeavesOutTheTermOfTheAccelerationWhenAskedTo) {
+  RollForward with{LatencyHandling::kMeasured, 0.1, kLength};
+  RollForward without{LatencyHandling::kMeasured, 0.1, kLength, 1.0, false};
+  const double latency = 0.5 * (0.1 + 0.14);
+  const double term = 0.5 * 0.5 * std::tan(0.1) / kLength * latency * latency;
+  EXPECT_NEAR(with.predict(moving()).pose.psi - without.predict(moving()).pose.psi, term, 1e-14);
+  EXPECT_GT(term, 1e-4);
+}
+
+TEST(RollForward, RejectsAnImpossibleLatency) {
+  RollForward roll{LatencyHandling::kMeasured, 0.1, kLength};
+  model::Measurement now = moving();
+  for (const double delay :
+       {std::numeric_limits<double>::quiet_NaN(), 1e9, -1e9, std::numeric_limits<double>::infinity()}) {
+    now.delay = delay;
+    (void)roll.predict(now);
+    EXPECT_GE(roll.compensated(), 0.0);
+    EXPECT_LE(roll.compensated(), 0.5);
+  }
+}
+
+TEST(RollForward, MilesPerHourTakeTheCarAsMuchFarther) {
+  model::Measurement now;
+  now.speed = 10.0;
+  now.psi = 0.3;
+  now.steer = 0.05;
+  RollForward literal(LatencyHandling::kPositionOnly, 0.1, 2.67, 2.25);
+  RollForward longer(LatencyHandling::kPositionOnly, 0.225, 2.67);
+  const Motion a = literal.predict(now);
+  const Motion b = longer.predict(now);
+  EXPECT_NEAR(a.pose.x, b.pose.x, 1e-12);
+  EXPECT_NEAR(a.pose.y, b.pose.y, 1e-12);
+  EXPECT_NEAR(a.speed, 10.0, 1e-12);  // told in m/s again
+  RollForward inside(LatencyHandling::kInsideModel, 0.1, 2.67, 2.25);
+  EXPECT_EQ(inside.predict(now).speed, 10.0);
+}
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+model::Measurement with_waypoints(const std::vector<Vec2>& points) {
+  model::Measurement now;
+  now.waypoint_count = static_cast<int>(points.size());
+  std::copy(points.begin(), points.end(), now.waypoints.begin());
+  return now;
+}
+
+TEST(CarFrame, PutsWhatIsAheadOnXAndWhatIsLeftOnY) {
+  const auto now = with_waypoints({{10.0, 25.0}, {0.0, 20.0}});
+  const model::Pose car{10.0, 20.0, 0.5 * kPi};  // looking along W's y
+  const LocalPoints local = to_car_frame(now, car);
+  ASSERT_EQ(local.count, 2);
+  EXPECT_NEAR(local.points[0].x(), 5.0, 1e-12);
+  EXPECT_NEAR(local.points[0].y(), 0.0, 1e-12);
+  EXPECT_NEAR(local.points[1].x(), 0.0, 1e-12);
+  EXPECT_NEAR(local.points[1].y(), 10.0, 1e-12);
+}
+
+TEST(CarFrame, IsTheSameByRotationAndByRadiusAndAngle) {
+  Random random{3};
+  for (int turn = 0; turn < 200; ++turn) {
+    std::vector<Vec2> points;
+    for (int i = 0; i < 6; ++i)
+      points.emplace_back(random.uniform(-200.0, 200.0), random.uniform(-200.0, 200.0));
+    const model::Pose car{random.uniform(-200.0, 200.0), random.uniform(-200.0, 200.0),
+                          random.uniform(-7.0, 7.0)};
+    const LocalPoints a = to_car_frame(with_waypoints(points), car);
+    const LocalPoints b = to_car_frame_polar(with_waypoints(points), car);
+    ASSERT_EQ(a.count, b.count);
+    // 1e-12: rounding of an arc tangent and a sine, times 600 m.
+    for (std::size_t i = 0; i < 6; ++i) ASSERT_LT((a.points[i] - b.points[i]).norm(), 1e-12 * 600.0);
+  }
+}
+
+TEST(CarFrame, SkipsPointsThatAreNotFiniteAndRejectsAnImpossibleCount) {
+  auto now =
+      with_waypoints({{1.0, 2.0}, {kNaN, 1.0}, {3.0, std::numeric_limits<double>::infinity()}, {4.0, 5.0}});
+  EXPECT_EQ(to_car_frame(now, {}).count, 2);
+  now.waypoint_count = 1'000'000;
+  EXPECT_LE(to_car_frame(now, {}).count, model::Measurement::kMaxWaypoints);
+  now.waypoint_count = -5;
+  EXPECT_EQ(to_car_frame_polar(now, {}).count, 0);
+}
+
+TEST(FitCubic, EqualsEigensHouseholderSolutionOnRandomPoints) {
+  Random random{17};
+  for (int turn = 0; turn < 500; ++turn) {
+    const int count = 4 + static_cast<int>(random.bits() % 20U);
+    std::vector<Vec2> points;
+    Eigen::MatrixXd a(count, 4);
+    Eigen::VectorXd b(count);
+    for (int i = 0; i < count; ++i) {
+      const double x = 5.0 * i + random.uniform(-2.0, 2.0) - 10.0;
+      points.emplace_back(x, random.uniform(-20.0, 20.0));
+      a.row(i) << 1.0, x, x * x, x * x * x;
+      b(i) = points.back().y();
+    }
+    const Eigen::VectorXd expected = a.householderQr().solve(b);
+    Cubic fit;
+    ASSERT_TRUE(fit_cubic(points, fit));
+    // 1e-7 relative: condition of the unscaled powers (about 1e6) times rounding, with room.
+    for (int i = 0; i < 4; ++i)
+      ASSERT_NEAR(fit.c[static_cast<std::size_t>(i)], expected(i), 1e-7 * (1.0 + std::fabs(expected(i))));
+  }
+}
+
+TEST(FitCubic, LowersTheDegreeForFewerPoints) {
+  Cubic fit;
+  ASSERT_TRUE(fit_cubic(std::vector<Vec2>{{0.0, 1.0}, {10.0, 3.0}}, fit));
+  EXPECT_NEAR(fit.at(5.0), 2.0, 1e-12);
+  EXPECT_EQ(fit.c[2], 0.0);
+  EXPECT_EQ(fit.c[3], 0.0);
+  ASSERT_TRUE(fit_cubic(std::vector<Vec2>{{0.0, 1.0}, {10.0, 2.0}, {20.0, 5.0}}, fit));
+  EXPECT_NEAR(fit.at(20.0), 5.0, 1e-12);
+  EXPECT_EQ(fit.c[3], 0.0);
+}
+
+TEST(FitCubic, HasTheOrderThatIsAsked) {
+  std::vector<Vec2> points;
+  for (const double x : {-3.0, -1.0, 1.0, 3.0}) points.emplace_back(x, 1.0 + x * x);
+  Cubic fit;
+  ASSERT_TRUE(fit_cubic(points, fit, 2));
+  EXPECT_NEAR(fit.at(3.0), 10.0, 1e-12);
+  ASSERT_TRUE(fit_cubic(points, fit, 1));
+  EXPECT_NEAR(fit.c[0], 6.0, 1e-12) << "the mean";
+  EXPECT_NEAR(fit.c[1], 0.0, 1e-12);
+  EXPECT_EQ(fit.c[2], 0.0);
+  EXPECT_EQ(fit.c[3], 0.0);
+}
+
+TEST(FitCubic, TakesTheMeanWherePointsShareAnX) {
+  Cubic fit;
+  ASSERT_TRUE(fit_cubic(std::vector<Vec2>{{0.0, 1.0}, {0.0, 3.0}, {10.0, 5.0}, {10.0, 7.0}}, fit));
+  EXPECT_NEAR(fit.at(0.0), 2.0, 1e-9);
+  EXPECT_NEAR(fit.at(10.0), 6.0, 1e-9);
+}
+
+TEST(FitCubic, RefusesALineThatHasNoExtentAhead) {
+  Cubic fit{{9.0, 9.0, 9.0, 9.0}};
+  EXPECT_FALSE(fit_cubic(std::vector<Vec2>{}, fit));
+  EXPECT_FALSE(fit_cubic(std::vector<Vec2>{{5.0, 5.0}}, fit));
+  EXPECT_FALSE(fit_cubic(std::vector<Vec2>{{5.0, 0.0}, {5.0, 10.0}, {5.0, 20.0}}, fit));
+  EXPECT_EQ(fit.c[0], 9.0);
 }
 
 }  // namespace

@@ -116,14 +116,6 @@ TEST(Explanation, SaysWhatLimitsTheSpeedOfAPlannedLap) {
   EXPECT_EQ(says({.speed = v}), SpeedLimiter::kPlan);
 }
 
-TEST(Explanation, SaysInOneSentenceEachWhatLimitsTheSpeed) {
-  for (const auto& word : road::kSpeedLimiterWords) {
-    EXPECT_EQ(word.value, static_cast<SpeedLimiter>(&word - road::kSpeedLimiterWords.data()));
-    EXPECT_LE(std::count(word.sentence.begin(), word.sentence.end(), ' '), 13) << word.sentence;
-    EXPECT_EQ(word.sentence.find_last_not_of("abcdefghijklmnopqrstuvwxyz "), std::string_view::npos);
-  }
-}
-
 TEST(Explanation, BaselinesKnowTheirInputsAndTheBendAhead) {
   const auto pid = std::move(*make_pid({.proportional_gain = 10.0, .speed = {}}, model::udacity_params()));
   const Explanation full_lock = answer(*pid, on_a_left_bend()).report.explanation;

@@ -3,6 +3,7 @@
 
 #include <regex>
 
+#include "chicane/road/reference_line.hpp"
 #include "chicane/solver/solution.hpp"
 #include "support/chicane_test.hpp"
 
@@ -29,6 +30,7 @@ TEST(GuardWords, AreReadableAndTellEveryValueApart) {
   expect_readable(kRungWords);
   expect_readable(kGuardReasonWords);
   expect_readable(solver::kSolveStatusWords);
+  expect_readable(road::kSpeedLimiterWords);
 }
 
 TEST(GuardWords, NumbersAndNamesThatRecordingsKeep) {

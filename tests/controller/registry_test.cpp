@@ -105,12 +105,15 @@ TEST(ControllerList, AsksTheEntryForContradictions) {
   EXPECT_TRUE(List::find("pid")->contradictions(options).empty());
 }
 
-TEST(Registry, MakesEveryControllerUnderItsName) {
+TEST(Registry, MakesEveryControllerUnderItsNameAndForASoundCar) {
+  model::VehicleParams broken;
+  broken.mass = -1.0;
   std::set<std::string_view> groups;
   for (const Registry::Kind& kind : Registry::kinds()) {
     const auto controller = Registry::make(kind.name, {}, kCar);
     ASSERT_TRUE(controller) << controller.error().message;
     EXPECT_EQ((*controller)->name(), kind.name);
+    EXPECT_FALSE(Registry::make(kind.name, {}, broken)) << kind.name;
     EXPECT_TRUE(groups.insert(kind.group).second) << kind.group;
     for (const char c : kind.name) EXPECT_TRUE(c == '-' || std::islower(c) != 0) << kind.name;
   }

@@ -30,7 +30,7 @@ for last; do :; done
 """
 SERVERS = ("./run.sh", "./run.sh serve")  # run until Ctrl-C
 REAL_TIME = ("05_any_language.py &", "./run.sh simulate", "./run.sh league", *SERVERS)
-NOT_HERE = ("./run.sh python",)  # builds the module; python.first_lines tests it
+NOT_HERE = ("./run.sh python",)  # builds the module; python.drive tests it
 
 
 def commands_of(page):

@@ -7,7 +7,6 @@
 
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/protocol/library.hpp"
-#include "chicane/protocol/schema_json.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "support/chicane_test.hpp"
 
@@ -16,10 +15,9 @@ namespace {
 
 struct Golden {
   const char* name;
-  std::vector<std::pair<std::string, std::string>> settings;
+  const char* settings;  ///< "track=oval fault=gps_noise@3": settings, and faults as --fault takes them
   std::uint64_t plain;
-  std::uint64_t fused;                ///< with the fused multiply-add of AVX2, AVX-512, and aarch64
-  std::vector<std::string> faults{};  ///< as --fault takes them
+  std::uint64_t fused;  ///< with the fused multiply-add of AVX2, AVX-512, and aarch64
 };
 
 void PrintTo(const Golden& golden, std::ostream* out) { *out << golden.name; }
@@ -28,23 +26,19 @@ class GoldenRun : public ::testing::TestWithParam<Golden> {};
 
 std::uint64_t hash_of(const Golden& golden, InstructionSet set) {
   choose_instruction_set(set);
-  auto settings = golden.settings;
-  settings.insert(settings.begin(), {"time_limit_s", "20"});
-  auto scenario = protocol::compose({.scenario_file = {}, .settings = settings});
-  for (const std::string& fault : golden.faults) {
-    const auto event = protocol::parse_fault(fault);
-    if (!event) scenario = fail(event.error());
-    if (scenario) scenario->faults.push_back(*event);
+  protocol::Request request{.scenario_file = {}, .settings = {{"time_limit_s", "20"}}};
+  std::istringstream words(golden.settings);
+  for (std::string key, value; std::getline(words, key, '=') && std::getline(words, value, ' ');) {
+    if (key == "fault") {
+      request.faults.push_back(value);
+    } else {
+      request.settings.emplace_back(key, value);
+    }
   }
-  const auto loop = scenario ? run::ClosedLoop::create(*scenario) : fail(scenario.error());
+  const auto loop = test::good(run::ClosedLoop::create(*test::good(protocol::compose(request))));
   choose_instruction_set(detect_instruction_set());
-  if (!loop) {
-    ADD_FAILURE() << loop.error().message;
-    return 0;
-  }
   return run::run_closed_loop(**loop).state_hash;
 }
-
 TEST_P(GoldenRun, HasTheBitsItHad) {
   for (const InstructionSet set :
        {InstructionSet::kBaseline, InstructionSet::kAvx2, InstructionSet::kAvx512, InstructionSet::kNeon}) {
@@ -58,32 +52,18 @@ TEST_P(GoldenRun, HasTheBitsItHad) {
 INSTANTIATE_TEST_SUITE_P(
     Runs, GoldenRun,
     ::testing::Values(
-        Golden{"default_udacity", {{"track", "lakeside"}}, 0x0c8200a0a532b872, 0x17e76bd240ed9900},
-        Golden{"default_road_car",
-               {{"track", "hairpins"}, {"car", "road-car"}},
-               0x3a16a588d79ba285,
-               0xb3ce88dad40045a3},
-        Golden{"with_noise",
-               {{"track", "oval"}, {"sensor.position_noise_m", "0.05"}, {"seed", "7"}},
-               0xa5873ef58cd3a8c4,
+        Golden{"default_udacity", "track=lakeside", 0x0c8200a0a532b872, 0x17e76bd240ed9900},
+        Golden{"default_road_car", "track=hairpins car=road-car", 0x3a16a588d79ba285, 0xb3ce88dad40045a3},
+        Golden{"with_noise", "track=oval sensor.position_noise_m=0.05 seed=7", 0xa5873ef58cd3a8c4,
                0x71557e2981879082},
-        Golden{"weighted",
-               {{"preset", "weighted"}, {"guard.mode", "off"}},
-               0x2289abd6e0b12064,
-               0xb8e2970005c7aff6},
-        Golden{"delay_in_model",
-               {{"preset", "delay-in-model"}, {"guard.mode", "off"}},
-               0xd30ef6e02d73d5c9,
+        Golden{"weighted", "preset=weighted guard.mode=off", 0x2289abd6e0b12064, 0xb8e2970005c7aff6},
+        Golden{"delay_in_model", "preset=delay-in-model guard.mode=off", 0xd30ef6e02d73d5c9,
                0xa462655e2609913f},
-        Golden{"race", {{"preset", "race"}, {"time_limit_s", "6"}}, 0x1add3ecf2b3039e8, 0x72021bc15fa958be},
-        Golden{"faults",
-               {{"time_limit_s", "10"}},
-               0xc1838157236eb84e,
-               0x5af8115718b55d12,
-               {"gps_noise@3", "frozen_sensor@6"}},
-        Golden{
-            "model_car", {{"car", "f1tenth"}, {"time_limit_s", "6"}}, 0x4131fcf0c35031a8, 0x9fca7825a5a7d92a},
-        Golden{"pid", {{"preset", "pid"}, {"latency_ms", "37"}}, 0xdab4f526bb2d5617, 0xdab4f526bb2d5617}),
+        Golden{"race", "preset=race time_limit_s=6", 0x1add3ecf2b3039e8, 0x72021bc15fa958be},
+        Golden{"faults", "time_limit_s=10 fault=gps_noise@3 fault=frozen_sensor@6", 0xc1838157236eb84e,
+               0x5af8115718b55d12},
+        Golden{"model_car", "car=f1tenth time_limit_s=6", 0x4131fcf0c35031a8, 0x9fca7825a5a7d92a},
+        Golden{"pid", "preset=pid latency_ms=37", 0xdab4f526bb2d5617, 0xdab4f526bb2d5617}),
     [](const auto& run) { return std::string(run.param.name); });
 
 }  // namespace

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/identify/drive_log.hpp"
 
-#include <unistd.h>
-
 #include "chicane/base/random.hpp"
 #include "chicane/protocol/car_messages.hpp"
 #include "chicane/telemetry/mcap.hpp"
 #include "support/chicane_test.hpp"
+#include "support/folder.hpp"
 
 namespace chicane::identify {
 namespace {
@@ -33,23 +32,14 @@ std::string plain(const Row& r) {
   return text.str();
 }
 
-class Csv {
+class Csv : test::Folder {
  public:
-  explicit Csv(const std::string& text)
-      : file_{
-            (std::filesystem::temp_directory_path() / ("chicane_log_" + std::to_string(::getpid()) + ".csv"))
-                .string()} {
-    std::ofstream(file_) << text;
-  }
-  ~Csv() { std::filesystem::remove(file_); }
-  Csv(const Csv&) = delete;
-  Csv& operator=(const Csv&) = delete;
+  explicit Csv(const std::string& text) : file_{write("log.csv", text)} {}
   [[nodiscard]] Result<std::vector<DriveLog>> read(const LogOptions& options = {}) const {
     return read_log(file_, options);
   }
   [[nodiscard]] std::string refusal(const LogOptions& options = {}) const {
-    const auto logs = read(options);
-    return logs ? "read" : logs.error().message;
+    return test::refusal_of(read(options));
   }
 
  private:
@@ -105,7 +95,7 @@ TEST(DriveLog, TakesColumnsByNameWhereTheyAreTold) {
   EXPECT_THAT(file.refusal(),
               HasSubstr(":1: header: got time,x,y,psi,speed,my_column, expected a column steer; "
                         "name it by --columns steer=NAME"));
-  EXPECT_EQ(file.refusal({.columns = {{"steer", "my_column"}}}), "read");
+  EXPECT_EQ(file.refusal({.columns = {{"steer", "my_column"}}}), "");
   EXPECT_THAT(file.refusal({.columns = {{"steer", "yours"}}}), HasSubstr("got no column yours"));
 }
 
@@ -117,7 +107,7 @@ TEST(DriveLog, RefusesWhatCannotBeWhatItsColumnSays) {
                     }))
         .refusal();
   };
-  EXPECT_EQ(with(1.0, 1.0, 1.0), "read");
+  EXPECT_EQ(with(1.0, 1.0, 1.0), "");
   EXPECT_THAT(with(1.0, 1.0, 57.3), HasSubstr("is it in degrees?"));
   EXPECT_THAT(with(1.0, 2.237, 1.0), HasSubstr("is it in mph?"));
   EXPECT_THAT(with(1.0, 3.6, 1.0), HasSubstr("is it in km/h?"));
@@ -137,7 +127,7 @@ TEST(DriveLog, TakesNoiseOfThePlaceForNoOtherSpeed) {
     text << t << ',' << 2.0 * std::sin(angle) + 0.05 * random.normal() << ','
          << 2.0 - 2.0 * std::cos(angle) + 0.05 * random.normal() << ',' << angle << ",1,0.15\n";
   }
-  EXPECT_EQ(Csv(text.str()).refusal(), "read");
+  EXPECT_EQ(Csv(text.str()).refusal(), "");
 }
 
 TEST(DriveLog, NamesLineAndColumnOfAWrongCell) {
@@ -191,9 +181,8 @@ TEST(DriveLog, AYawRateThatIsZeroThroughoutIsNone) {
 }
 
 TEST(DriveLog, IsReadFromABagOfOdometryAndCommands) {
-  const std::string file =
-      (std::filesystem::temp_directory_path() / ("chicane_log_" + std::to_string(::getpid()) + ".mcap"))
-          .string();
+  const test::Folder folder;
+  const std::string file = folder.path("log.mcap");
   write_bag(file, false);
   const auto logs = test::good(read_log(file, {}));
   ASSERT_EQ(logs->size(), 1U);
@@ -210,27 +199,21 @@ TEST(DriveLog, IsReadFromABagOfOdometryAndCommands) {
               HasSubstr("got the topics /odom, /pf/odom of nav_msgs/msg/Odometry, expected "
                         "one; name it by --odom-topic"));
   EXPECT_TRUE(read_log(file, {.odom_topic = "/odom"}));
-  std::filesystem::remove(file);
 }
 
 TEST(DriveLog, IsReadFromTheFolderThatRosbag2Writes) {
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("chicane_bag_" + std::to_string(::getpid()));
-  std::filesystem::create_directory(folder);
-  EXPECT_THAT(read_log(folder.string(), {}).error().message, HasSubstr("got a folder without .mcap or .db3"));
-  std::ofstream(folder / "old.bag") << "#ROSBAG V2.0\n";
-  EXPECT_THAT(read_log((folder / "old.bag").string(), {}).error().message,
+  const test::Folder folder;
+  const std::string bag = folder.path("");
+  EXPECT_THAT(test::refusal_of(read_log(bag, {})), HasSubstr("got a folder without .mcap or .db3"));
+  EXPECT_THAT(test::refusal_of(read_log(folder.write("old.bag", "#ROSBAG V2.0\n"), {})),
               HasSubstr("got a bag of ROS 1, expected one of ROS 2"));
-  std::ofstream(folder / "metadata.yaml") << "rosbag2_bagfile_information:\n";
-  write_bag((folder / "bag_0.mcap").string(), false);
-  const auto one = test::good(read_log(folder.string(), {}));
-  EXPECT_EQ(one->size(), 1U);
-  EXPECT_TRUE(read_plain_log(folder.string(), {}));
-  write_bag((folder / "bag_1.mcap").string(), false);
-  const auto both = test::good(read_log(folder.string(), {}));
-  EXPECT_EQ(both->size(), 2U) << "parts of a bag that was split";
-  EXPECT_THAT(read_plain_log(folder.string(), {}).error().message, HasSubstr("got a bag of 2 files"));
-  std::filesystem::remove_all(folder);
+  folder.write("metadata.yaml", "rosbag2_bagfile_information:\n");
+  write_bag(folder.path("bag_0.mcap"), false);
+  EXPECT_EQ(test::good(read_log(bag, {}))->size(), 1U);
+  EXPECT_TRUE(read_plain_log(bag, {}));
+  write_bag(folder.path("bag_1.mcap"), false);
+  EXPECT_EQ(test::good(read_log(bag, {}))->size(), 2U) << "parts of a bag that was split";
+  EXPECT_THAT(test::refusal_of(read_plain_log(bag, {})), HasSubstr("got a bag of 2 files"));
 }
 
 TEST(DriveLog, IsPartedAtGapsAndJumps) {

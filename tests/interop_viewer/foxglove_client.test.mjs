@@ -2,7 +2,6 @@
 // The reference client of the Foxglove WebSocket protocol against our server: what Foxglove and Lichtblick do.
 import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
-import WebSocket from 'ws';
 import { clientOf, reader, startDrive } from './chicane_drive.mjs';
 import { PATIENCE } from './patience.mjs';
 
@@ -100,23 +99,6 @@ for (const subprotocol of ['foxglove.websocket.v1', 'foxglove.sdk.v1']) {
       client.unsubscribe(id);
     });
 
-    it('lists, sets and refuses parameters, and tells who asked to be told', async () => {
-      const { client, next } = connection;
-      client.getParameters([], 'all');
-      const { parameters } = await next('parameterValues', ({ id }) => id === 'all');
-      assert.ok(parameters.length > 90);
-      client.subscribeParameterUpdates(['latency_ms']);
-      client.setParameters([{ name: 'latency_ms', value: 60 }], 'set');
-      const answer = await next('parameterValues', ({ id }) => id === 'set');
-      assert.deepEqual(answer.parameters, [{ name: 'latency_ms', type: 'float64', value: 60 }]);
-      const refused = next('status');
-      client.setParameters([{ name: 'latency_ms', value: 900 }], 'again');
-      const update = await next('parameterValues', ({ id }) => id === 'again');
-      assert.equal(update.parameters[0].value, 60);
-      const message = 'latency_ms: got 900, expected a number in [0, 500] ms';
-      assert.deepEqual(await refused, { op: 'status', level: 2, message });
-    });
-
     it('calls services, and tells all viewers of a pause', async () => {
       const { client, seen, next } = connection;
       const call = async (name, data) => {
@@ -143,31 +125,8 @@ for (const subprotocol of ['foxglove.websocket.v1', 'foxglove.sdk.v1']) {
       assert.match(failure.message, /cdr/);
       client.unsubscribe(id);
     });
-
-    it('answers nonsense in words and goes on', async () => {
-      const { client, socket, next } = connection;
-      const noChannel = '{"op":"subscribe","subscriptions":[{"id":1,"channelId":999}]}';
-      for (const nonsense of ['{', '{"op":"fly"}', noChannel, Buffer.from([9])]) {
-        const status = next('status');
-        socket.send(nonsense);
-        assert.equal((await status).level, 2);
-      }
-      client.getParameters(['preset'], 'still here');
-      const { parameters } = await next('parameterValues', ({ id }) => id === 'still here');
-      assert.equal(parameters[0].value, 'default');
-    });
   });
 }
-
-it('refuses a client that offers neither sub-protocol, in words', async () => {
-  const socket = new WebSocket(drive.url.replace('http', 'ws'));
-  const status = await new Promise((resolve) => {
-    socket.on('unexpected-response', (_request, response) => resolve(response.statusCode));
-    socket.on('open', () => resolve('open'));
-    socket.on('error', () => undefined);
-  });
-  assert.equal(status, 404);
-});
 
 it('a viewer that never reads does not stop the others', async () => {
   const lazy = await connect('foxglove.sdk.v1');

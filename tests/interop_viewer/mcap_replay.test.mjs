@@ -93,37 +93,6 @@ describe('chicane replay', () => {
     assert.equal(await program.stop('SIGINT'), 0);
     assert.equal((await chicane('replay', kept, '--verify')).code, 0);
   });
-
-  it('compares futures for scripts', async () => {
-    const same = await chicane('replay', log, '--branch-at', '5', '--json');
-    assert.equal(same.code, 0, same.stderr);
-    const report = JSON.parse(same.stdout);
-    assert.equal(report.first_difference, null);
-    assert.deepEqual(report.branch, report.recorded);
-    const wrong = await chicane('replay', log, '--branch-at', '50', '--json');
-    assert.equal(wrong.code, 2);
-    assert.match(wrong.stderr, /expected a moment in \[0, 9\.96\] s/);
-  });
-});
-
-describe('chicane report', () => {
-  it('writes one page that holds its recordings', async () => {
-    const page = join(folder, 'run.html');
-    const written = await chicane('report', log, '-o', page);
-    if (/has no dashboard/.test(written.stderr)) return;
-    assert.equal(written.code, 0, written.stderr);
-    const [, json] = /<script type="application\/json" id="chicane-report">(.*?)<\/script>/s.exec(
-      readFileSync(page, 'utf8'),
-    );
-    const { kind, logs } = JSON.parse(json);
-    assert.equal(kind, 'runs');
-    assert.equal(logs[0].name, 'run.mcap');
-    const [{ run, centre, frames }] = logs[0].runs;
-    assert.match(JSON.stringify(run), /lakeside/);
-    assert.ok(centre);
-    assert.ok(frames.time_s.length > 100);
-    for (const column of Object.values(frames)) assert.equal(column.length, frames.time_s.length);
-  });
 });
 
 describe('a session with an external simulator', () => {

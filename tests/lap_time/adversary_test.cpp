@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-#include "chicane/base/math.hpp"
+#include "chicane/base/random.hpp"
 #include "chicane/lap_time/detail/plan_search.hpp"
 #include "chicane/lap_time/limit.hpp"
 #include "chicane/sim/plant_registry.hpp"
@@ -17,18 +17,6 @@ road::Track road() {
   };
   return *road::Track::create("clover", test::with_widths(test::points_round(160, radius), 4.0, 4.0), true);
 }
-
-/// Numbers in [low, high] that are the same on every machine.
-class Numbers {
- public:
-  double between(double low, double high) {
-    state_ = state_ * 6364136223846793005ULL + 1442695040888963407ULL;
-    return low + (high - low) * static_cast<double>(state_ >> 11U) / 9007199254740992.0;
-  }
-
- private:
-  std::uint64_t state_ = 2026;
-};
 
 /// The slip of driven rear wheels has a flat optimum beyond the peak, where a search without a cap gets
 /// stuck.
@@ -50,14 +38,8 @@ TEST(LimitOfADriftingCar, IsFoundFromSlipCappedAtThePeak) {
   car.steer_limit = 1.07;
   car.steer_rate_limit = 0.4;
   car.steer_lag = 0.0;
-  const auto radius = [](double angle) {
-    return 2.5 * (75.0 + 25.0 * std::cos(2.0 * angle) + 12.0 * std::sin(3.0 * angle));
-  };
-  const road::Track track =
-      *road::Track::create("bean", test::with_widths(test::points_round(140, radius), 4.0, 5.0), true);
-  const Result<PlantLimit> limit =
-      find_plant_limit(track, "double-track", {}, {.time_step = 0.1, .wants_witness = false}, car);
-  ASSERT_TRUE(limit) << limit.error().message;
+  const auto limit = test::good(find_plant_limit(test::bean_road(1.0, 2.5, 4.0, 5.0), "double-track", {},
+                                                 {.time_step = 0.1, .wants_witness = false}, car));
   EXPECT_FALSE(limit->line.is_best_so_far);
 }
 
@@ -66,26 +48,24 @@ class Adversary : public testing::TestWithParam<const char*> {};
 TEST_P(Adversary, BeatsNoBoundWithWhateverItAssumesAndRisks) {
   const road::Track track = road();
   const PlantLimitOptions options{.time_step = 0.1, .wants_witness = false};
-  const Result<PlantLimit> limit = find_plant_limit(track, GetParam(), {}, options);
-  ASSERT_TRUE(limit) << limit.error().message;
+  const Result<PlantLimit> limit = test::good(find_plant_limit(track, GetParam(), {}, options));
 
   const std::unique_ptr<LimitModel> model = std::move(*make_limit_model(GetParam(), {}));
   const std::unique_ptr<sim::Plant> plant = std::move(*sim::make_plant(GetParam()));
   PlanSearch search(track, *model, {.time_step = 0.1});
-  const Result<NodePlan> optimum = search.find();
-  ASSERT_TRUE(optimum);
+  const Result<NodePlan> optimum = test::good(search.find());
   NodePlan from = *optimum;
   const bool is_udacity = std::string(GetParam()) == "udacity";
-  Numbers numbers;
+  Random numbers{2026};
   int clean = 0;
   double best = 1e9;
   constexpr int kTrials = 16;
   for (int trial = 0; trial < kTrials; ++trial) {
-    const Reserve risk{.margin = numbers.between(-0.02, 0.2),
-                       .grip_share = numbers.between(0.97, 1.02),  // above 1: it assumes more than there is
-                       .slip_share = is_udacity ? numbers.between(0.9, 1.6) : numbers.between(0.75, 1.05),
-                       .brake_share = numbers.between(0.95, 1.02),
-                       .steer_weight = numbers.between(1e-5, 1e-3)};
+    const Reserve risk{.margin = numbers.uniform(-0.02, 0.2),
+                       .grip_share = numbers.uniform(0.97, 1.02),  // above 1: it assumes more than there is
+                       .slip_share = is_udacity ? numbers.uniform(0.9, 1.6) : numbers.uniform(0.75, 1.05),
+                       .brake_share = numbers.uniform(0.95, 1.02),
+                       .steer_weight = numbers.uniform(1e-5, 1e-3)};
     const Result<NodePlan> plan = search.near(from, risk);
     if (!plan) continue;
     from = *plan;

@@ -1,35 +1,27 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/lap_time/detail/cyclic_system.hpp"
+
+#include "chicane/base/random.hpp"
 #include "support/chicane_test.hpp"
 
 namespace chicane::lap_time {
 namespace {
 
-/// Numbers in [−1, 1] that are the same on every machine.
-class Numbers {
- public:
-  double next() {
-    state_ = state_ * 6364136223846793005ULL + 1442695040888963407ULL;
-    return static_cast<double>(state_ >> 11U) / 4503599627370496.0 - 1.0;
-  }
-
- private:
-  std::uint64_t state_ = 42;
-};
-
 TEST(SymmetricBlock, SolvesWhatIsNotDefiniteAndCountsItsNegativeEigenvalues) {
-  Numbers numbers;
+  Random numbers{42};
   // [H Aᵀ; A 0] with H positive definite: as many negative eigenvalues as A has rows.
   constexpr int n = 9, rows = 4, all = n + rows;
   std::vector<double> matrix(all * all, 0.0);
-  for (int i = 0; i < n; ++i) matrix[i * all + i] = 1e-6 + (i % 3 == 0 ? 0.0 : 2.0 + numbers.next());
+  for (int i = 0; i < n; ++i)
+    matrix[i * all + i] = 1e-6 + (i % 3 == 0 ? 0.0 : 2.0 + numbers.uniform(-1.0, 1.0));
   for (int i = 0; i < rows; ++i)
-    for (int j = 0; j < n; ++j) matrix[(n + i) * all + j] = matrix[j * all + n + i] = numbers.next();
+    for (int j = 0; j < n; ++j)
+      matrix[(n + i) * all + j] = matrix[j * all + n + i] = numbers.uniform(-1.0, 1.0);
   SymmetricBlock block;
   ASSERT_TRUE(block.factor(matrix.data(), all));
   EXPECT_EQ(block.negative(), rows);
   std::vector<double> x(all), b(all, 0.0);
-  for (double& value : x) value = numbers.next();
+  for (double& value : x) value = numbers.uniform(-1.0, 1.0);
   for (int i = 0; i < all; ++i)
     for (int j = 0; j < all; ++j) b[i] += matrix[i * all + j] * x[j];
   block.solve(b.data(), 1);
@@ -43,15 +35,16 @@ TEST(SymmetricBlock, RefusesASingularMatrix) {
 
 /// A ring of nodes with a convex cost and the equations of a system.
 void fill(CyclicSystem& system, int nodes, int nz, int nx, double convexity) {
-  Numbers numbers;
+  Random numbers{42};
   const int nb = system.block_size();
   for (int k = 0; k < nodes; ++k) {
     double* d = system.diagonal(k);
-    for (int i = 0; i < nz; ++i) d[i * nb + i] = convexity * (1.5 + numbers.next());
+    for (int i = 0; i < nz; ++i) d[i * nb + i] = convexity * (1.5 + numbers.uniform(-1.0, 1.0));
     for (int i = nz; i < nb; ++i)
-      for (int j = 0; j < nz; ++j) d[i * nb + j] = d[j * nb + i] = (i - nz == j ? 1.0 : 0.2 * numbers.next());
+      for (int j = 0; j < nz; ++j)
+        d[i * nb + j] = d[j * nb + i] = (i - nz == j ? 1.0 : 0.2 * numbers.uniform(-1.0, 1.0));
     for (int i = 0; i < nx * nz; ++i)
-      system.coupling(k)[i] = (i % nz == i / nz ? -0.7 : 0.1 * numbers.next());
+      system.coupling(k)[i] = (i % nz == i / nz ? -0.7 : 0.1 * numbers.uniform(-1.0, 1.0));
   }
 }
 
@@ -61,9 +54,9 @@ TEST(CyclicSystem, SolvesARing) {
     CyclicSystem system(nodes, nz, nx, na);
     fill(system, nodes, nz, nx, 1.0);
     ASSERT_TRUE(system.factor());
-    Numbers numbers;
+    Random numbers{42};
     std::vector<double> x(static_cast<std::size_t>(nodes * nb)), b(x.size(), 0.0);
-    for (double& value : x) value = numbers.next();
+    for (double& value : x) value = numbers.uniform(-1.0, 1.0);
     for (int k = 0; k < nodes; ++k) {
       const int next = (k + 1) % nodes;
       for (int i = 0; i < nb; ++i)

@@ -2,14 +2,51 @@
 #include "chicane/lap_time/racing_plan.hpp"
 
 #include "chicane/base/math.hpp"
+#include "chicane/lap_time/detail/collocation.hpp"
+#include "chicane/lap_time/detail/limit_model.hpp"
 #include "chicane/lap_time/detail/plant_models.hpp"
 #include "chicane/lap_time/limit.hpp"
-#include "lap_time/derivatives.hpp"
+
 #include "support/chicane_test.hpp"
 #include "support/roads.hpp"
+#include "support/stadium.hpp"
 
 namespace chicane::lap_time {
 namespace {
+
+/// Checks values, Jacobian and weighted Hessian of a node's functions at `z` against central differences.
+void expect_derivatives_of_differences(const NodeFunctions& f, int node, const std::vector<double>& z) {
+  const auto n = static_cast<std::size_t>(f.variables);
+  const auto m = static_cast<std::size_t>(f.functions());
+  std::vector<double> weights(m);
+  for (std::size_t i = 0; i < m; ++i) weights[i] = 0.3 + 0.1 * static_cast<double>(i % 7);
+  std::vector<double> out(m), low(m), high(m), jacobian(m * n), slopes_low(m * n), slopes_high(m * n);
+  std::vector<double> hessian(n * (n + 1) / 2), other(n * (n + 1) / 2);
+  f.derivatives(node, z.data(), weights.data(), out.data(), jacobian.data(), hessian.data());
+  f.values(node, z.data(), low.data());
+  for (std::size_t i = 0; i < m; ++i) EXPECT_NEAR(out[i], low[i], 1e-12 * (1.0 + std::fabs(low[i])));
+  for (std::size_t j = 0; j < n; ++j) {
+    const double step = 1e-5 * f.scale[j];
+    std::vector<double> moved = z;
+    moved[j] = z[j] - step;
+    f.derivatives(node, moved.data(), weights.data(), low.data(), slopes_low.data(), other.data());
+    moved[j] = z[j] + step;
+    f.derivatives(node, moved.data(), weights.data(), high.data(), slopes_high.data(), other.data());
+    for (std::size_t i = 0; i < m; ++i) {
+      const double slope = (high[i] - low[i]) / (2.0 * step);
+      // Central differences of second order: a millionth of the function's size by scaled steps of 1e-5.
+      EXPECT_NEAR(jacobian[i * n + j], slope, 1e-5 * (std::fabs(slope) + 1.0 / f.scale[j])) << i << ' ' << j;
+    }
+    for (std::size_t i = 0; i <= j; ++i) {
+      double bent = 0.0;
+      for (std::size_t k = 0; k < m; ++k)
+        bent += weights[k] * (slopes_high[k * n + i] - slopes_low[k * n + i]) / (2.0 * step);
+      EXPECT_NEAR(hessian[j * (j + 1) / 2 + i], bent,
+                  1e-4 * (std::fabs(bent) + 1.0 / (f.scale[i] * f.scale[j])))
+          << i << ' ' << j;
+    }
+  }
+}
 
 /// A closed road with corners to both sides, one side wider than the other; `side` −1 mirrors it.
 road::Track bean(double side = 1.0, double half_width = 4.0) {
@@ -82,8 +119,8 @@ TEST(RacingPlan, BrakesNoHarderThanASlowSteeringCanCatch) {
 TEST_P(RacingPlanOf, WithoutReserveIsAsFastAsThePlantCanBe) {
   const auto& plan = plan_without_reserve();
   ASSERT_TRUE(plan) << plan.error().message;
-  const auto limit = find_plant_limit(bean(), GetParam(), {}, {.time_step = 0.1, .wants_witness = false});
-  ASSERT_TRUE(limit) << limit.error().message;
+  const auto limit =
+      test::good(find_plant_limit(bean(), GetParam(), {}, {.time_step = 0.1, .wants_witness = false}));
   EXPECT_NEAR(plan->lap_time() / limit->bound.lap, 1.0, 0.025);
 }
 
@@ -124,23 +161,11 @@ TEST_P(RacingPlanOf, UsesNoMoreSlipThanItIsToldTo) {
   EXPECT_LT(most_slip(0.6), 0.85 * most_slip(1.0)) << "of the rear axle";
 }
 
-/// Two straights of 60 m between half circles of 14 m radius, 4 m of road each side.
-road::Track two_hairpins() {
-  std::vector<road::TrackPoint> points;
-  constexpr double kRadius = 14.0, kStraight = 60.0;
-  const auto add = [&](double x, double y) { points.push_back({{x, y}, 4.0, 4.0}); };
-  for (double x = 0.0; x < kStraight; x += 4.0) add(x, -kRadius);
-  for (int i = 0; i < 12; ++i)
-    add(kStraight + kRadius * std::sin(kPi * i / 12.0), -kRadius * std::cos(kPi * i / 12.0));
-  for (double x = kStraight; x > 0.0; x -= 4.0) add(x, kRadius);
-  for (int i = 0; i < 12; ++i) add(-kRadius * std::sin(kPi * i / 12.0), kRadius * std::cos(kPi * i / 12.0));
-  return *road::Track::create("two hairpins", points, true);
-}
-
 /// docs/limit.md: the rear slides as far as the closed loop is stable, the front keeps its slope.
 TEST(RacingPlan, SlidesWhereThatIsFasterAndStable) {
   const model::VehicleParams car = model::udacity_params();
-  const road::Track tight = two_hairpins();
+  const road::Track tight = *road::Track::create(
+      "two hairpins", test::with_widths(test::even_stadium(52, 14.0, 60.0), 4.0, 4.0), true);
   const auto grips = plan_racing_line(tight, car);
   const auto slides = plan_racing_line(tight, car, {.slides = true});
   const auto late = plan_racing_line(tight, car, {.slides = true, .delay = 0.4});
@@ -169,8 +194,7 @@ TEST_P(RacingPlanOf, IsTheSameEachTime) {
 }
 
 TEST_P(RacingPlanOf, KeepsToASpeedLimit) {
-  const auto plan = plan_racing_line(bean(), car_named(GetParam()), {.speed_limit = 15.0});
-  ASSERT_TRUE(plan) << plan.error().message;
+  const auto plan = test::good(plan_racing_line(bean(), car_named(GetParam()), {.speed_limit = 15.0}));
   for (const road::RacingLinePoint& p : plan->points) EXPECT_LE(p.vx, 15.01);
 }
 
@@ -179,18 +203,15 @@ INSTANTIATE_TEST_SUITE_P(Cars, RacingPlanOf, testing::Values("udacity", "road-ca
 });
 
 TEST(RacingPlan, SaysWhyThereIsNone) {
-  const auto narrow = plan_racing_line(bean(1.0, 0.9), model::udacity_params());
-  ASSERT_FALSE(narrow);
-  EXPECT_NE(narrow.error().message.find("road"), std::string::npos) << narrow.error().message;
+  EXPECT_THAT(test::refusal_of(plan_racing_line(bean(1.0, 0.9), model::udacity_params())), HasSubstr("road"));
   EXPECT_FALSE(plan_racing_line(bean(), model::udacity_params(), {.grip_share = 0.0}));
   EXPECT_FALSE(plan_racing_line(bean(), model::udacity_params(), {.margin = -0.1}));
 }
 
 TEST(RacingPlan, SaysWhetherALapCanBeDriven) {
   EXPECT_TRUE(can_be_driven(bean(), model::road_car_params(), 4.0, 1.0));
-  const auto narrow = can_be_driven(bean(1.0, 0.7), model::road_car_params(), 4.0, 1.0);
-  ASSERT_FALSE(narrow);
-  EXPECT_EQ(narrow.error().message.find("the road is "), 0U) << narrow.error().message;
+  EXPECT_THAT(test::refusal_of(can_be_driven(bean(1.0, 0.7), model::road_car_params(), 4.0, 1.0)),
+              StartsWith("the road is "));
   const road::Track open =
       road::Track::create("open", std::vector<road::TrackPoint>(bean(1.0, 0.7).raw_points()), false).value();
   EXPECT_TRUE(can_be_driven(open, model::road_car_params(), 4.0, 1.0)) << "it need not come round";
@@ -217,22 +238,12 @@ TEST(RacingPlan, EntersAnOpenRoadAsItLeavesIt) {
 
 // What model tracks have: maps of F1TENTH are 22 m wide in full size, around bends of 10 m.
 TEST(RacingPlan, TakesARoadThatIsWiderThanItsBendsAreTight) {
-  constexpr double kRadius = 9.0;
   constexpr double kHalfWidth = 10.0;
-  std::vector<road::TrackPoint> points;
-  for (const double side : {1.0, -1.0}) {
-    for (int i = 0; i < 15; ++i) points.push_back({{side * (10.0 * i - 70.0), -side * kRadius}, 0.0, 0.0});
-    for (int i = 1; i < 8; ++i) {
-      const double angle = kPi * i / 8.0;
-      points.push_back(
-          {{side * (70.0 + kRadius * std::sin(angle)), -side * kRadius * std::cos(angle)}, 0.0, 0.0});
-    }
-  }
-  for (road::TrackPoint& point : points) point.left = point.right = kHalfWidth;
-  const road::Track track = road::Track::create("wide", points, true).value();
+  const road::Track track = *road::Track::create(
+      "wide", test::with_widths(test::even_stadium(96, 9.0, 140.0), kHalfWidth, kHalfWidth), true);
   for (const std::string name : {"udacity", "road-car"}) {
-    const auto plan = plan_racing_line(track, car_named(name), {.margin = 0.25, .grip_share = 0.93});
-    ASSERT_TRUE(plan) << name << ": " << plan.error().message;
+    const auto plan =
+        test::good(plan_racing_line(track, car_named(name), {.margin = 0.25, .grip_share = 0.93}));
     for (const road::RacingLinePoint& p : plan->points) {
       const double bend = track.centre().at(p.s).curvature;
       EXPECT_GT(1.0 - bend * p.offset, 0.0) << name << ": beyond the bend's centre at s = " << p.s;
@@ -247,6 +258,77 @@ TEST(RacingPlan, StopsWhenToldTo) {
       plan_racing_line(bean(), model::udacity_params(), {.go_on = [&](int, double) { return ++told < 5; }});
   EXPECT_FALSE(plan);
   EXPECT_EQ(told, 5);
+}
+
+road::Track circle() { return test::circle_road(60.0, 120, 5.0, 4.0); }
+
+class PlantModel : public testing::TestWithParam<const char*> {
+ protected:
+  PlantModel() : model_{std::move(*make_limit_model(GetParam(), {}))} {
+    road_ = lay_nodes(circle(), model_->guess_car(), 0.1);
+    model_->set_road(road_);
+  }
+  /// A car in a bend, each variable a little different.
+  std::vector<double> somewhere() const {
+    const NodeFunctions& f = model_->functions();
+    std::vector<double> z(static_cast<std::size_t>(f.variables), 0.0);
+    model_->guess(15.0, 1.0, 0.02, z.data());
+    for (std::size_t i = 0; i < z.size(); ++i) z[i] += (0.11 + 0.017 * static_cast<double>(i)) * f.scale[i];
+    return z;
+  }
+
+  std::unique_ptr<LimitModel> model_;
+  RoadNodes road_;
+};
+
+TEST_P(PlantModel, ItsDerivativesAreThoseOfDifferences) {
+  expect_derivatives_of_differences(model_->functions(), 3, somewhere());
+}
+
+INSTANTIATE_TEST_SUITE_P(Plants, PlantModel, testing::Values("udacity", "road-car"), [](const auto& param) {
+  return std::string(param.param) == "udacity" ? "Udacity" : "RoadCar";
+});
+
+TEST(UdacityModel, AcceleratesAndTurnsAsThePlantDoes) {
+  const UdacityModel model;
+  sim::UdacityCar car;
+  car.reset({0.0, 0.0, -1.0}, 25.0);
+  const model::Command command{0.08, 0.6};
+  for (int i = 0; i < 1500; ++i) car.advance(command);
+  const model::State& x = car.state();
+  // The steady bend of the model and of the plant. What a State shows is from before the helper and after
+  // drag.
+  const double turn = 0.625 * model.car.steer_helper * sim::UdacityCar::kStepLength * x.r;
+  const double vx = 1.001 * x.vx - turn * x.vy;
+  const double vy = x.vy + turn * x.vx;
+  const double pull = 0.6 * model.drive() - model.damping() * vx;
+  const auto m = model.motion(vx, vy, x.r, 0.08, pull);
+  EXPECT_NEAR(m.vx, 0.0, 0.05);
+  EXPECT_NEAR(m.vy, 0.0, 0.15);  // of 14 m/s² that the tyres give
+  EXPECT_NEAR(m.yaw, 0.0, 0.03);
+}
+
+TEST(DoubleTrackModel, HasTheForcesOfThePlantOnceItsTyresHaveSettled) {
+  DoubleTrackModel model;
+  sim::DoubleTrack car;
+  car.reset({}, 25.0);
+  const model::Command command{0.06, 0.3};
+  double pedal = 0.0;
+  Vec2 shift{};
+  const double dt = sim::DoubleTrack::kStepLength;
+  for (int i = 0; i < 2500; ++i) {
+    car.advance(command);
+    pedal = model.car.pedal().next(pedal, command.throttle, dt);
+    shift += dt / model.car.load_lag * (Vec2{car.output().ax, car.output().ay} - shift);
+  }
+  const model::State& x = car.state();
+  double z[DoubleTrackModel::kVariables] = {0.0, 0.0, x.vx, x.vy, x.r, x.steer, pedal, shift.x(), shift.y()};
+  for (std::size_t i = 0; i < 4; ++i) z[DoubleTrackModel::kSlip + i] = car.output().slip_ratio[i];
+  const auto m = model.motion(z);
+  EXPECT_NEAR(m.ax, car.output().ax, 0.02);
+  EXPECT_NEAR(m.ay, car.output().ay, 0.05);
+  EXPECT_NEAR(m.yaw, 0.0, 0.02);
+  for (const double balance : m.balance) EXPECT_NEAR(balance, 0.0, 0.01);
 }
 
 }  // namespace

@@ -136,50 +136,6 @@ TEST(LiveChange, SurvivesARestart) {
   EXPECT_EQ(loop->summary().state_hash, fresh->summary().state_hash);
 }
 
-TEST(LiveChange, ComesOutTheSameFromTheQueueAndFromAScript) {
-  const Settings settings{{"track", "oval"}, {"sensor.position_noise_m", "0.02"}};
-  const std::vector<std::pair<std::uint64_t, Setting>> changes{
-      {20, setting("tracking_mpc.weight_lateral", "3")},
-      {40, setting("latency_ms", "220")},
-      {60, setting("latency_ms", "20")},
-      {61, setting("tracking_mpc.horizon_steps", "30")},
-      {80, setting("plant_options.friction_scale", "0.9")},
-      {81, setting("sensor.heading_noise_deg", "0.1")},
-      {100, setting("manual.is_on", "true")},
-      {100, setting("manual.steer", "0.03")},
-      {110, setting("manual.throttle", "-1")},
-      {120, setting("manual.is_on", "false")},
-      {130, setting("tracking_mpc.speed_limit_mps", "20")}};
-  const auto live = loop_of(settings);
-  live->apply({.name = "run.pace", .value = "20"});
-  RunControls controls;
-  std::vector<Change> script;
-  std::size_t next = 0;
-  static_cast<void>(run_realtime(*live, {.step_budget = 0.0}, controls,
-                                 {.on_frame =
-                                      [&](const telemetry::Frame& frame) {
-                                        for (; next < changes.size() && changes[next].first == frame.cycle;
-                                             ++next)
-                                          EXPECT_TRUE(controls.settings.push(changes[next].second));
-                                        controls.wants_stop = frame.cycle == 200;
-                                      },
-                                  .on_change = [&](const Change& change) { script.push_back(change); }}));
-  ASSERT_EQ(script.size(), changes.size());
-  EXPECT_EQ(script.front().cycle, 21U);
-
-  const auto scripted = loop_of(settings);
-  next = 0;
-  while (scripted->cycle() < live->cycle() || scripted->time() < live->time() - 1e-9) {
-    if (scripted->is_control_due()) {
-      for (; next < script.size() && script[next].cycle == scripted->cycle(); ++next)
-        scripted->apply(script[next]);
-    }
-    scripted->advance();
-  }
-  EXPECT_EQ(scripted->summary().state_hash, live->summary().state_hash);
-  EXPECT_EQ(scripted->cycle(), live->cycle());
-}
-
 TEST(LiveChange, OfFrictionAndMassIsThatOfACarBuiltSo) {
   for (const std::string car : {"udacity", "road-car"}) {
     SCOPED_TRACE(car);

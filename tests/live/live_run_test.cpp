@@ -24,7 +24,7 @@ Result<std::unique_ptr<LiveRun>> fast_run(const scenario::Scenario& scenario, ru
   return LiveRun::create(options, std::move(*run::ClosedLoop::create(scenario)), controls);
 }
 
-TEST(LiveRun, DrivesToItsEndAndRecordsAllOfIt) {
+TEST(LiveRun, DrivesToItsEndAndRecordsAllOfItWithItsChanges) {
   scenario::Scenario scenario = laps_of_oval("1");
   scenario.time_limit = 8.0;
   run::RunControls controls;
@@ -33,11 +33,25 @@ TEST(LiveRun, DrivesToItsEndAndRecordsAllOfIt) {
   const telemetry::TemporaryFile file;
   auto recorder = test::good(recording::Recorder::create(
       {.path = file.path(), .run = (*live)->description(), .scenario = scenario, .may_wait = true}));
-  int frames = 0;
-  const telemetry::RunSummary summary =
-      (*live)->run(recorder->get(), {.on_frame = [&](const telemetry::Frame&) { ++frames; }});
+  const test::Settings changes{{"pid.speed_reference_mps", "9"},
+                               {"latency_ms", "220"},
+                               {"latency_ms", "20"},
+                               {"plant_options.friction_scale", "0.9"},
+                               {"sensor.heading_noise_deg", "0.1"},
+                               {"manual.is_on", "true"},
+                               {"manual.steer", "0.03"},
+                               {"manual.throttle", "-1"},
+                               {"manual.is_on", "false"}};
+  std::uint64_t frames = 0;
+  const telemetry::RunSummary summary = (*live)->run(
+      recorder->get(), {.on_frame = [&](const telemetry::Frame& frame) {
+        if (++frames % 5 != 0 || frames / 5 > changes.size()) return;
+        const auto& [name, value] = changes[frames / 5 - 1];
+        EXPECT_TRUE(controls.settings.push(
+            *run::read_setting({.cycle = frame.cycle, .time = frame.time, .name = name, .value = value})));
+      }});
   EXPECT_EQ(summary.end_reason, "time limit reached");
-  EXPECT_EQ(static_cast<int>(summary.cycles), frames);
+  EXPECT_EQ(summary.cycles, frames);
   ASSERT_TRUE((*recorder)->finish());
   const auto replayed = test::good(recording::verify_recording(file.path()));
   EXPECT_TRUE(replayed->is_verified());

@@ -22,11 +22,8 @@ class Driven {
  public:
   Driven() { log.begin(loop->scenario()); }
   void drive(int cycles, double budget = 0.0) {
-    for (int done = 0; done < cycles;) {
-      if (!loop->advance(budget)) continue;
-      log.note(loop->frame());
-      ++done;
-    }
+    test::drive_cycles(
+        *loop, cycles, [this](const telemetry::Frame& frame) { log.note(frame); }, budget);
     while (!loop->is_control_due()) static_cast<void>(loop->advance());
   }
   void change(std::string_view name, std::string_view value) {
@@ -92,9 +89,7 @@ TEST(RunLog, SaysWhyARunIsNotKnown) {
 
   const auto loop = loop_on("lakeside");
   log.begin(loop->scenario());
-  while (!loop->advance()) {
-  }
-  log.note(loop->frame());
+  test::drive_cycles(*loop, 1, [&](const telemetry::Frame& frame) { log.note(frame); });
   for (int i = 0; i < 99; ++i) log.note(telemetry::CompletedLap{});
   EXPECT_TRUE(log.since({}));
   log.note(telemetry::CompletedLap{});
@@ -124,12 +119,7 @@ std::unique_ptr<run::ClosedLoop> oval() {
 }
 
 void drive(run::ClosedLoop& loop, RunLog& log, int cycles) {
-  for (int done = 0; done < cycles;) {
-    if (!loop.advance()) continue;
-    log.note(loop.frame());
-    ++done;
-    if (done % 1000 == 0) static_cast<void>(log.end());  // or the ring would be full
-  }
+  test::drive_cycles(loop, cycles, [&](const telemetry::Frame& frame) { log.note(frame); });
 }
 
 /// From now on, once a checkpoint is near enough.

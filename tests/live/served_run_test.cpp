@@ -18,87 +18,81 @@ scenario::Scenario short_scenario() {
       {{"preset", "pid"}, {"track", "oval"}, {"laps", "0"}, {"time_limit_s", "2"}, {"latency_ms", "0"}});
 }
 
-TEST(ServedRun, AnswersOneSimulatorAfterTheOtherAndReportsOnAll) {
-  const scenario::Scenario scenario = short_scenario();
-  net::ServerOptions server;
-  server.port = 0;
-  ServedRun served(server, scenario, std::move(*run::make_controller(scenario)), *run::make_track(scenario));
-  EXPECT_EQ(served.description().track, "oval");
-  EXPECT_EQ(served.description().mode, "serve");
-  std::atomic<std::uint16_t> port{0};
-  std::atomic<bool> stop{false};
-  Result<wire::ServeSummary> summary;
-  int frames = 0;
-  std::thread serving([&] {
-    summary = served.run(
-        nullptr, {.on_frame = [&](const telemetry::Frame&) { ++frames; }},
-        [&](std::uint16_t chosen) { port = chosen; }, stop);
-  });
-  while (port == 0) std::this_thread::yield();
-  std::uint64_t answers = 0;
-  for (int car = 0; car < 2; ++car) {
-    const auto done = test::good(wire::simulate(
-        {.url = "ws://127.0.0.1:" + std::to_string(port.load()) + "/socket.io/?EIO=4&transport=websocket"},
-        scenario, {}, stop));
-    answers += done->answers;
+/// A served run on a thread of its own.
+class Serving {
+ public:
+  explicit Serving(std::optional<road::Track> track = *run::make_track(short_scenario()))
+      : served{{.port = 0},
+               short_scenario(),
+               std::move(*run::make_controller(short_scenario())),
+               std::move(track)} {}
+  void start(const LiveHooks& hooks) {
+    thread_ = std::thread([this, hooks] {
+      summary_ = served.run(
+          nullptr, hooks, [this](std::uint16_t chosen) { port_ = chosen; }, stop_);
+    });
+    while (port_ == 0) std::this_thread::yield();
   }
-  stop = true;
-  serving.join();
-  ASSERT_TRUE(summary);
-  EXPECT_EQ(summary->connections, 2U);
-  EXPECT_GE(summary->answers, answers);
-  EXPECT_EQ(summary->run.cycles, static_cast<std::uint64_t>(frames)) << "of both cars";
-  EXPECT_EQ(summary->run.track, "oval");
+  /// A simulator's run against it.
+  wire::SimulateReport simulate(const scenario::Scenario& scenario) {
+    const std::string url = "ws://127.0.0.1:" + std::to_string(port_.load());
+    return *test::good(
+        wire::simulate({.url = url + "/socket.io/?EIO=4&transport=websocket"}, scenario, {}, stop_));
+  }
+  wire::ServeSummary finish() {
+    stop_ = true;
+    thread_.join();
+    return *test::good(summary_);
+  }
+
+  ServedRun served;
+
+ private:
+  std::atomic<std::uint16_t> port_{0};
+  std::atomic<bool> stop_{false};
+  Result<wire::ServeSummary> summary_;
+  std::thread thread_;
+};
+
+TEST(ServedRun, AnswersOneSimulatorAfterTheOtherAndReportsOnAll) {
+  Serving serving;
+  EXPECT_EQ(serving.served.description().track, "oval");
+  EXPECT_EQ(serving.served.description().mode, "serve");
+  std::uint64_t frames = 0;
+  serving.start({.on_frame = [&](const telemetry::Frame&) { ++frames; }});
+  std::uint64_t answers = 0;
+  for (int car = 0; car < 2; ++car) answers += serving.simulate(short_scenario()).answers;
+  const wire::ServeSummary summary = serving.finish();
+  EXPECT_EQ(summary.connections, 2U);
+  EXPECT_GE(summary.answers, answers);
+  EXPECT_EQ(summary.run.cycles, frames) << "of both cars";
+  EXPECT_EQ(summary.run.track, "oval");
 }
 
 TEST(ServedRun, NamesTheRoadThatIsNotTheSimulators) {
-  scenario::Scenario scenario = short_scenario();
-  net::ServerOptions server;
-  server.port = 0;
-  ServedRun served(server, scenario, std::move(*run::make_controller(scenario)), *run::make_track(scenario));
-  std::atomic<std::uint16_t> port{0};
-  std::atomic<bool> stop{false};
-  Result<wire::ServeSummary> summary;
-  std::vector<std::string> lines;
+  Serving serving;
   std::mutex mutex;
-  std::thread serving([&] {
-    summary = served.run(
-        nullptr,
-        {.say =
-             [&](std::string_view line) {
-               const std::lock_guard lock(mutex);
-               lines.emplace_back(line);
-             }},
-        [&](std::uint16_t chosen) { port = chosen; }, stop);
-  });
-  while (port == 0) std::this_thread::yield();
-  scenario.track = "speedway";
-  scenario.time_limit = 4.0;  // until waypoints are shown that are not oval's, too
-  const auto done = wire::simulate(
-      {.url = "ws://127.0.0.1:" + std::to_string(port.load()) + "/socket.io/?EIO=4&transport=websocket"},
-      scenario, {}, stop);
-  stop = true;
-  serving.join();
-  ASSERT_TRUE(done && summary);
-  EXPECT_EQ(std::count_if(lines.begin(), lines.end(),
-                          [](const std::string& line) {
-                            return line.find("another road than oval, up to") != std::string::npos;
-                          }),
-            1);
-  EXPECT_EQ(summary->run.track, "");
-  EXPECT_EQ(summary->run.off_track_events, 0);
-  EXPECT_EQ(summary->run.why_no_limit, "the simulator drives on another road than --track");
+  int named = 0;
+  serving.start({.say = [&](std::string_view line) {
+    const std::lock_guard lock(mutex);
+    named += line.find("another road than oval, up to") != std::string_view::npos ? 1 : 0;
+  }});
+  scenario::Scenario other = short_scenario();
+  other.track = "speedway";
+  other.time_limit = 4.0;  // until waypoints are shown that are not oval's, too
+  serving.simulate(other);
+  const wire::ServeSummary summary = serving.finish();
+  EXPECT_EQ(named, 1);
+  EXPECT_EQ(summary.run.track, "");
+  EXPECT_EQ(summary.run.off_track_events, 0);
+  EXPECT_EQ(summary.run.why_no_limit, "the simulator drives on another road than --track");
 }
 
 TEST(ServedRun, SaysWhyThereIsNoLimitWithoutARoad) {
-  const scenario::Scenario scenario = short_scenario();
-  net::ServerOptions server;
-  server.port = 0;
-  ServedRun served(server, scenario, std::move(*run::make_controller(scenario)), std::nullopt);
-  EXPECT_NE(served.description().limit.why_not.find("--track"), std::string::npos);
+  Serving serving(std::nullopt);
+  EXPECT_THAT(serving.served.description().limit.why_not, HasSubstr("--track"));
   const std::atomic<bool> stop{true};
-  const auto summary = test::good(served.run(nullptr, {}, {}, stop));
-  EXPECT_EQ(summary->answers, 0U);
+  EXPECT_EQ(test::good(serving.served.run(nullptr, {}, {}, stop))->answers, 0U);
 }
 
 }  // namespace

@@ -61,11 +61,7 @@ TEST(WhatIf, AnswersTheNewestQuestionWithBothFutures) {
   const auto loop = test::loop_of(test::scenario_of({{"track", "oval"}, {"laps", "0"}}));
   RunLog log(false);
   log.begin(loop->scenario());
-  for (int cycles = 0; cycles < 300;) {
-    if (!loop->advance()) continue;
-    log.note(loop->frame());
-    ++cycles;
-  }
+  test::drive_cycles(*loop, 300, [&](const telemetry::Frame& frame) { log.note(frame); });
   std::atomic<int> computed{0};
   WhatIf what_if([&](const WhatIfQuestion& question, const recording::BranchHooks& hooks) {
     ++computed;

@@ -2,6 +2,7 @@
 #include "chicane/model/prediction.hpp"
 
 #include "chicane/base/random.hpp"
+#include "chicane/model/vehicle.hpp"
 #include "chicane/model/wheel_forces.hpp"
 #include "support/chicane_test.hpp"
 
@@ -230,6 +231,18 @@ TEST(PredictionModel, MovesLoadByTheForceOfTheTyres) {
     turning.steer = car.wheelbase() * turning.r / 20.0;
     turning.vy = car.rear_axle * turning.r;
     EXPECT_NEAR(model.tire_use(turning).along_front, model.tire_use(slipping(0.0, 4.0)).along_front, 1e-3);
+  }
+}
+
+TEST(WithGrip, GivesThatShareOfTheTyresForcesAtTheSameSlip) {
+  const VehicleParams car = road_car_params();
+  EXPECT_EQ(with_grip(car, 1.0), car);
+  const PredictionModel told(car);
+  const PredictionModel slippery(with_grip(car, 0.7));
+  for (const double steer : {-0.08, 0.01, 0.05}) {
+    const BodyMotion<double> rolling{25.0, 0.0, 0.0, steer, 0.0};
+    const double force = told.change(rolling).vy;
+    EXPECT_NEAR(slippery.change(rolling).vy / force, 0.7, 0.01) << steer;
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/net/client.hpp"
 
+#include <boost/beast/core/detail/base64.hpp>
 #include <boost/uuid/detail/sha1.hpp>
 #include <thread>
 
@@ -50,7 +51,6 @@ class FakeServer {
   std::thread thread_;
 };
 
-/// that.
 /// What RFC 6455 §4.2.2 asks a server to answer.
 std::string accept_of(const std::string& key) {
   boost::uuids::detail::sha1 hash;
@@ -58,17 +58,12 @@ std::string accept_of(const std::string& key) {
   hash.process_bytes(text.data(), text.size());
   unsigned int words[5];
   hash.get_digest(words);
-  std::string bits;
-  for (const unsigned int word : words) {
-    for (int i = 31; i >= 0; --i) bits += (word >> i) & 1U ? '1' : '0';
-  }
-  bits += "00";  // 162 bits are 27 digits, and one '=' fills up
-  std::string result;
-  for (std::size_t i = 0; i < bits.size(); i += 6) {
-    constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    result += kDigits[std::stoul(bits.substr(i, 6), nullptr, 2)];
-  }
-  return result + "=";
+  std::array<unsigned char, 20> bytes{};
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    bytes[i] = static_cast<unsigned char>(words[i / 4] >> (24 - 8 * (i % 4)));
+  std::string text64(boost::beast::detail::base64::encoded_size(bytes.size()), ' ');
+  boost::beast::detail::base64::encode(text64.data(), bytes.data(), bytes.size());
+  return text64;
 }
 
 std::string key_of(const std::string& request) {
@@ -78,19 +73,17 @@ std::string key_of(const std::string& request) {
 
 TEST(Client, SendsTheOriginalRequestByteForByte) {
   std::string request;
-  {
-    const FakeServer server([&](RawSocket& socket) {
-      request = socket.until("\r\n\r\n");
-      socket.send("HTTP/1.1 503 Service Unavailable\r\n\r\nbusy with another car\n");
-    });
-    EXPECT_THAT(test::refusal_of(Client::connect(server.url(), 5s)),
-                HasSubstr("503 Service Unavailable: busy with another car"));
-    std::string expected = test::unity_handshake(server.port());
-    const std::string key = key_of(request);
-    EXPECT_EQ(key.size(), 24U);
-    expected.replace(expected.find("dGhlIHNhbXBsZSBub25jZQ=="), 24, key);
-    EXPECT_EQ(request, expected);
-  }
+  const FakeServer server([&](RawSocket& socket) {
+    request = socket.until("\r\n\r\n");
+    socket.send("HTTP/1.1 503 Service Unavailable\r\n\r\nbusy with another car\n");
+  });
+  EXPECT_THAT(test::refusal_of(Client::connect(server.url(), 5s)),
+              HasSubstr("503 Service Unavailable: busy with another car"));
+  std::string expected = test::unity_handshake(server.port());
+  const std::string key = key_of(request);
+  EXPECT_EQ(key.size(), 24U);
+  expected.replace(expected.find("dGhlIHNhbXBsZSBub25jZQ=="), 24, key);
+  EXPECT_EQ(request, expected);
 }
 
 TEST(Client, RefusesAWrongAcceptKeyAndASilentServer) {

@@ -1,22 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/net/http_response.hpp"
+
 #include "support/chicane_test.hpp"
+#include "support/folder.hpp"
 
 namespace chicane::net {
 namespace {
-
-/// A file with `content` that is gone after the test.
-class File {
- public:
-  explicit File(const std::string& content) { std::ofstream(path_, std::ios::binary) << content; }
-  ~File() { std::filesystem::remove(path_); }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-  [[nodiscard]] const std::string& path() const { return path_; }
-
- private:
-  std::string path_ = testing::TempDir() + "chicane_http_" + std::to_string(::getpid());
-};
 
 std::string whole(HttpResponse response, const HttpRequest& request = {}) {
   std::string text = response.head(request), piece;
@@ -50,16 +39,16 @@ TEST(Range, OfOtherKindsIsPassedOver) {
 TEST(HttpResponse, SendsAFileInPiecesThatMakeTheWhole) {
   std::string content(200'000, '\0');
   for (std::size_t i = 0; i < content.size(); ++i) content[i] = static_cast<char>(i * i % 251);
-  const File file(content);
-  const std::string answer =
-      whole(HttpResponse::of({.content_type = "application/x", .file = file.path()}, {}));
+  const test::Folder folder;
+  const std::string file = folder.write("file", content);
+  const std::string answer = whole(HttpResponse::of({.content_type = "application/x", .file = file}, {}));
   EXPECT_THAT(answer, StartsWith("HTTP/1.1 200 OK\r\n"));
   EXPECT_THAT(answer, HasSubstr("Content-Length: 200000\r\n"));
   EXPECT_THAT(answer, HasSubstr("Accept-Ranges: bytes\r\n"));
   EXPECT_TRUE(answer.ends_with("\r\n\r\n" + content));
 
-  HttpResponse response = HttpResponse::of({.content_type = "application/x", .file = file.path()},
-                                           {.range = "bytes=65530-131080"});
+  HttpResponse response =
+      HttpResponse::of({.content_type = "application/x", .file = file}, {.range = "bytes=65530-131080"});
   EXPECT_THAT(response.head({}), StartsWith("HTTP/1.1 206 Partial Content\r\n"));
   EXPECT_THAT(response.head({}), HasSubstr("Content-Range: bytes 65530-131080/200000\r\n"));
   EXPECT_THAT(response.head({}), HasSubstr("Content-Length: 65551\r\n"));
@@ -88,9 +77,10 @@ TEST(HttpResponse, SendsTheWholeWhenThePartIsOfAnOlderContent) {
 }
 
 TEST(HttpResponse, StopsAtTheEndOfAFileThatHasBecomeShorter) {
-  const File file(std::string(100'000, 'x'));
-  HttpResponse response = HttpResponse::of({.content_type = "a/b", .file = file.path()}, {});
-  std::filesystem::resize_file(file.path(), 40'000);  // more than one piece
+  const test::Folder folder;
+  const std::string file = folder.write("file", std::string(100'000, 'x'));
+  HttpResponse response = HttpResponse::of({.content_type = "a/b", .file = file}, {});
+  std::filesystem::resize_file(file, 40'000);  // more than one piece
   std::string piece;
   EXPECT_TRUE(response.body().next(piece));
   EXPECT_FALSE(response.body().next(piece));
@@ -102,6 +92,26 @@ TEST(HttpResponse, NamesTheFileToSaveAs) {
   EXPECT_THAT(whole(HttpResponse::of(preset, {})),
               HasSubstr("Content-Disposition: attachment; filename=\"preset.yaml\"\r\n"));
   EXPECT_THAT(whole(HttpResponse::of({.content_type = "a/b"}, {})), Not(HasSubstr("Disposition")));
+}
+
+TEST(Token, IsLongFitsIntoALinkAndIsNeverTheSame) {
+  std::set<std::string> seen;
+  for (int i = 0; i < 1000; ++i) {
+    const Result<std::string> token = make_token();
+    ASSERT_TRUE(token) << token.error().message;
+    EXPECT_EQ(token->size(), 32U);  // 6 bits each
+    EXPECT_EQ(token->find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_"),
+              std::string::npos);
+    seen.insert(*token);
+  }
+  EXPECT_EQ(seen.size(), 1000U);
+}
+
+TEST(Token, IsTheSameLetterForLetterOnly) {
+  EXPECT_TRUE(is_token("abc", "abc"));
+  for (const char* given : {"", "ab", "abcd", "abC", "bbc", "xyz"})
+    EXPECT_FALSE(is_token(given, "abc")) << given;
+  EXPECT_FALSE(is_token("", ""));
 }
 
 }  // namespace

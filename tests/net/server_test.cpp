@@ -16,6 +16,15 @@ using test::unity_handshake;
 using test::upgraded;
 using namespace std::chrono_literals;
 
+const Asset kPage{.path = "/index.html", .content_type = "text/html", .content = "<h1>hello</h1>"};
+
+/// Status and reason in the close frame that comes next.
+std::string goodbye_of(RawSocket& socket) {
+  const auto frame = test::good(socket.frame());
+  EXPECT_EQ(frame->opcode, 8);
+  return frame->payload;
+}
+
 std::string get(std::uint16_t port, const std::string& target, const std::string& extra = {},
                 const std::string& method = "GET") {
   RawSocket socket(port);
@@ -78,9 +87,7 @@ TEST(Server, ClosesWithCodeAndReasonAfterWhatWaits) {
   recorder.server().send(id, std::string("last words"), false);
   recorder.server().close(id, 1013, "come back later");
   EXPECT_EQ(socket.frame()->payload, "last words");
-  const auto frame = test::good(socket.frame());
-  EXPECT_EQ(frame->opcode, 8);
-  EXPECT_EQ(frame->payload, std::string("\x03\xf5") + "come back later");
+  EXPECT_EQ(goodbye_of(socket), std::string("\x03\xf5") + "come back later");
   socket.send(RawSocket::masked("\x03\xf5", 8));
   socket.close();
   EXPECT_THAT(recorder.closed(1), ElementsAre("come back later"));
@@ -116,8 +123,8 @@ TEST(Server, ServesAssetsWithTheirHeadersAndNothingElse) {
   constexpr auto kGreeting =
       "\x1f\x8b\x08\0\0\0\0\0\x02\x03\xcb\x48\xcd\xc9\xc9\x57\xc8\x40\x27\x01\xe3\x51\x3d\x8d\x17\0\0\0"sv;
   Recorder recorder(
-      {}, {{.path = "/index.html", .content_type = "text/html", .content = "<h1>hello</h1>"},
-           {.path = "/app.js", .content_type = "text/javascript", .content = kGreeting, .gzip = true}});
+      {},
+      {kPage, {.path = "/app.js", .content_type = "text/javascript", .content = kGreeting, .gzip = true}});
   const std::string page = get(recorder.port(), "/?view=map");
   EXPECT_THAT(page, StartsWith("HTTP/1.1 200"));
   EXPECT_THAT(page, HasSubstr("Content-Security-Policy: default-src 'self'"));
@@ -140,7 +147,7 @@ TEST(Server, ServesAssetsWithTheirHeadersAndNothingElse) {
 }
 
 TEST(Server, DoesNotSendAnAssetTwice) {
-  Recorder recorder({}, {{.path = "/index.html", .content_type = "text/html", .content = "<h1>hello</h1>"}});
+  Recorder recorder({}, {kPage});
   const std::string page = get(recorder.port(), "/");
   const std::size_t start = page.find("ETag: ") + 6;
   const std::string tag = page.substr(start, page.find("\r\n", start) - start);
@@ -148,11 +155,10 @@ TEST(Server, DoesNotSendAnAssetTwice) {
 }
 
 TEST(Server, AsksForAContentBeforeItLooksForAnAsset) {
-  Recorder recorder({}, {{.path = "/index.html", .content_type = "text/html", .content = "<h1>hello</h1>"}},
-                    [](std::string_view path) -> std::optional<Content> {
-                      if (path != "/mode.json") return std::nullopt;
-                      return Content{.content_type = "application/json", .bytes = R"({"mode":"live"})"};
-                    });
+  Recorder recorder({}, {kPage}, [](std::string_view path) -> std::optional<Content> {
+    if (path != "/mode.json") return std::nullopt;
+    return Content{.content_type = "application/json", .bytes = R"({"mode":"live"})"};
+  });
   const std::string answer = get(recorder.port(), "/mode.json?x=1");
   EXPECT_THAT(answer, StartsWith("HTTP/1.1 200 OK\r\n"));
   EXPECT_THAT(answer, HasSubstr("Content-Type: application/json\r\n"));
@@ -205,9 +211,7 @@ TEST(Server, ClosesWith1009WhenAMessageIsTooLarge) {
   Recorder recorder({.max_message = 1000});
   RawSocket socket = upgraded(recorder.port());
   socket.send(RawSocket::masked(std::string(1001, 'x')));
-  const auto frame = test::good(socket.frame());
-  EXPECT_EQ(frame->opcode, 8);
-  EXPECT_EQ(frame->payload.substr(0, 2), "\x03\xf1");
+  EXPECT_THAT(goodbye_of(socket), StartsWith("\x03\xf1"));
   socket.close();
   EXPECT_THAT(recorder.closed(1).at(0), HasSubstr("more than 1000 bytes"));
 }
@@ -242,37 +246,37 @@ TEST(Server, TellsAnEndpointWhenOnlyTheLastPlacesAreLeft) {
   EXPECT_TRUE(recorder.upgrade().is_crowded);
 }
 
+/// Eight viewers that read nothing yet. 100 messages of 20 kB for each are within max_queue, and 16 MB
+/// together.
+struct Crowd {
+  Recorder recorder{{.idle_timeout = 60s, .max_waiting = 4'000'000}};
+  std::vector<RawSocket> viewers;
+  Crowd() {
+    for (std::size_t i = 0; i < 8; ++i) {
+      viewers.push_back(upgraded(recorder.port(), 4096));
+      recorder.opened(i + 1);
+    }
+  }
+};
+
 TEST(Server, BoundsTheMemoryOfAllConnectionsTogether) {
-  Recorder recorder({.idle_timeout = 60s, .max_waiting = 4'000'000});
-  std::vector<RawSocket> stuck;
-  for (std::size_t i = 0; i < 8; ++i) {
-    stuck.push_back(upgraded(recorder.port(), 4096));
-    recorder.opened(i + 1);
-  }
-  // 100 messages of 20 kB for each are within max_queue, and 16 MB together.
-  for (int i = 0; i < 100; ++i) {
-    for (const ConnectionId id : recorder.opened(8))
-      recorder.server().send(id, std::string(20'000, 'x'), false);
-  }
-  const std::vector<std::string> ended = recorder.closed(4);
+  Crowd crowd;
+  for (int i = 0; i < 100; ++i)
+    for (const ConnectionId id : crowd.recorder.opened(8))
+      crowd.recorder.server().send(id, std::string(20'000, 'x'), false);
+  const std::vector<std::string> ended = crowd.recorder.closed(4);
   EXPECT_GE(ended.size(), 4U);
   EXPECT_EQ(ended.front(), "does not read what it is sent");
 }
 
 TEST(Server, WhatIsSentToManyCountsOnce) {
-  Recorder recorder({.idle_timeout = 60s, .max_waiting = 4'000'000});
-  std::vector<RawSocket> viewers;
-  for (std::size_t i = 0; i < 8; ++i) {
-    viewers.push_back(upgraded(recorder.port(), 4096));
-    recorder.opened(i + 1);
-  }
+  Crowd crowd;
   for (int i = 0; i < 100; ++i) {
     const auto shared = std::make_shared<const std::string>(20'000, 'x');
-    for (const ConnectionId id : recorder.opened(8)) recorder.server().send(id, shared, false);
+    for (const ConnectionId id : crowd.recorder.opened(8)) crowd.recorder.server().send(id, shared, false);
   }
-  for (RawSocket& viewer : viewers) {
+  for (RawSocket& viewer : crowd.viewers)
     for (int i = 0; i < 100; ++i) ASSERT_TRUE(viewer.frame()) << i;
-  }
 }
 
 TEST(Server, NeedsATokenToListenForOtherMachines) {
@@ -281,8 +285,7 @@ TEST(Server, NeedsATokenToListenForOtherMachines) {
 }
 
 TEST(Server, ALinkWithTheTokenBecomesACookieAndThePageItself) {
-  Recorder recorder({.address = "0.0.0.0", .token = "secret"},
-                    {{.path = "/index.html", .content_type = "text/html", .content = "<h1>hello</h1>"}});
+  Recorder recorder({.address = "0.0.0.0", .token = "secret"}, {kPage});
   EXPECT_THAT(get(recorder.port(), "/"), StartsWith("HTTP/1.1 403"));
   EXPECT_THAT(get(recorder.port(), "/?token=guess"), StartsWith("HTTP/1.1 403"));
   const std::string answer = get(recorder.port(), "/?token=secret");
@@ -297,7 +300,7 @@ TEST(Server, ALinkWithTheTokenBecomesACookieAndThePageItself) {
 }
 
 TEST(Server, PagesMayOpenSocketsToTheirOwnHostOnly) {
-  Recorder recorder({}, {{.path = "/index.html", .content_type = "text/html", .content = "x"}});
+  Recorder recorder({}, {kPage});
   EXPECT_THAT(get(recorder.port(), "/"), HasSubstr("; connect-src 'self' ws://localhost wss://localhost; "));
 }
 
@@ -367,9 +370,7 @@ TEST(Server, SaysGoodbyeWhenItEnds) {
   RawSocket socket = upgraded(recorder->port());
   static_cast<void>(recorder->opened(1));
   recorder.reset();
-  const auto frame = test::good(socket.frame());
-  EXPECT_EQ(frame->opcode, 8);
-  EXPECT_EQ(frame->payload.substr(0, 2), "\x03\xe9");  // 1001 going away
+  EXPECT_THAT(goodbye_of(socket), StartsWith("\x03\xe9"));  // 1001 going away
 }
 
 // A page on a busy machine reads late: nothing that it was sent is lost, and it learns that the program
@@ -388,15 +389,14 @@ TEST(Server, WaitsForAPeerThatIsBehindBeforeItEnds) {
     ASSERT_TRUE(frame) << i;
     EXPECT_EQ(frame->payload.size(), message.size()) << i;
   }
-  const auto last = test::good(socket.frame());
-  EXPECT_EQ(last->opcode, 8);
+  EXPECT_THAT(goodbye_of(socket), StartsWith("\x03\xe9"));
   socket.send(RawSocket::masked("\x03\xe9", 8));
   socket.close();
   end.join();
 }
 
 TEST(Server, RunsTasksInOrderOfTheirTimeAndServesMeanwhile) {
-  Recorder recorder({}, {{.path = "/index.html", .content_type = "text/html", .content = "here"}});
+  Recorder recorder({}, {kPage});
   std::promise<std::string> order;
   std::string seen;
   recorder.server().run_after(300ms, [&] {
@@ -404,7 +404,7 @@ TEST(Server, RunsTasksInOrderOfTheirTimeAndServesMeanwhile) {
     order.set_value(seen);
   });
   recorder.server().run_after(0ms, [&] { seen += "soon "; });
-  EXPECT_THAT(get(recorder.port(), "/"), HasSubstr("here"));
+  EXPECT_THAT(get(recorder.port(), "/"), HasSubstr("hello"));
   EXPECT_EQ(order.get_future().get(), "soon late");
 }
 
@@ -414,10 +414,9 @@ std::string status(unsigned code) { return {static_cast<char>(code >> 8U), stati
 std::string answer_to_close(const Recorder& recorder, const std::string& payload) {
   RawSocket socket = upgraded(recorder.port());
   socket.send(RawSocket::masked(payload, 8));
-  const auto frame = socket.frame();
-  if (!frame || frame->opcode != 8) return "none";
+  const std::string status = goodbye_of(socket).substr(0, 2);
   EXPECT_EQ(socket.rest(), "");
-  return frame->payload.substr(0, 2);
+  return status;
 }
 
 TEST(Server, EchoesAClosingStatusAndAnswersABrokenCloseFrameWithAProtocolError) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "chicane/protocol/car_messages.hpp"
 #include "support/chicane_test.hpp"
 
 namespace chicane::test {
@@ -45,5 +46,12 @@ class CdrReader {
   std::string_view bytes_;
   std::size_t at_ = 4;
 };
+
+/// Each message that ends too early is refused.
+template <class Message>
+void expect_refused_when_cut(const std::string& bytes) {
+  for (std::size_t size = 0; size < bytes.size(); ++size)
+    EXPECT_FALSE(protocol::decode<Message>(std::string_view(bytes).substr(0, size))) << size;
+}
 
 }  // namespace chicane::test

@@ -5,21 +5,23 @@
 
 #include "chicane/base/math.hpp"
 #include "chicane/protocol/csv_text.hpp"
+#include "chicane/protocol/library.hpp"
 #include "support/chicane_test.hpp"
 #include "support/comma_locale.hpp"
+#include "support/folder.hpp"
 
 namespace chicane::protocol {
 namespace {
 
 const std::string kSource = CHICANE_SOURCE_DIR;
 
-/// A ring of R 60 m as CSV rows with a separator, `format` giving the columns of one point.
+/// A ring as CSV rows with a separator.
 std::string ring(const std::string& header, const std::string& separator, const std::string& tail = "",
-                 const std::string& end = "\n") {
+                 const std::string& end = "\n", double radius = 60.0) {
   std::string text = header;
   for (int i = 0; i < 40; ++i) {
     const double angle = 2.0 * kPi * i / 40.0;
-    text += std::to_string(60.0 * std::cos(angle)) + separator + std::to_string(60.0 * std::sin(angle)) +
+    text += std::to_string(radius * std::cos(angle)) + separator + std::to_string(radius * std::sin(angle)) +
             tail + end;
   }
   return text;
@@ -118,11 +120,7 @@ TEST(CsvTrack, RefusesDegreesOfLatitudeAndLongitude) {
 }
 
 TEST(CsvTrack, AssumesLengthsOfTheRoadsOwnScale) {
-  std::string text = "x_m,y_m\n";
-  for (int i = 0; i < 40; ++i)
-    text += std::to_string(6.0 * std::cos(kPi * i / 20.0)) + "," +
-            std::to_string(6.0 * std::sin(kPi * i / 20.0)) + "\n";
-  const TrackFile model = parse_track(text, "a.csv", {.scale = 0.1}).value();
+  const TrackFile model = parse_track(ring("x_m,y_m\n", ",", "", "\n", 6.0), "a.csv", {.scale = 0.1}).value();
   EXPECT_DOUBLE_EQ(model.points[0].left, 0.45);
   EXPECT_DOUBLE_EQ(model.options.smoothing_sigma, 0.01);
   const road::Track small = make_track(model).value();
@@ -173,12 +171,10 @@ TEST(CsvTrack, ForgivesLineEndsMarksBlanksAndSeparators) {
        {ring("x,y\r\n", ",", "", "\r\n"), ring("x,y\r", ",", "", "\r"), ring("\xef\xbb\xbfx,y\n", ","),
         ring("X;Y\n\n", " ; ", "", "\n\n  \n"), ring("x\ty\n", "\t"), ring("x y\n", "   "),
         ring("\"x\",\"y\"\n", ","), ring("x,y\n", ",", ","), ring("", ","), ring("# x, y\n", ",")}) {
-    const Result<TrackFile> file = parse_track(text, "a");
-    ASSERT_TRUE(file) << file.error().message;
+    const auto file = test::good(parse_track(text, "a"));
     ASSERT_EQ(file->points.size(), expected.size());
-    for (std::size_t i = 0; i < expected.size(); ++i) {
+    for (std::size_t i = 0; i < expected.size(); ++i)
       EXPECT_EQ(file->points[i].position, expected[i].position);
-    }
   }
 }
 
@@ -256,77 +252,108 @@ TEST(CsvTrack, WarningsAndColumnsHaveALimit) {
             "a.csv:1: header: got 1002 columns, expected at most 1000");
 }
 
-struct Broken {
+struct BrokenTrack {
   const char* file;
   const char* message;  ///< how it begins after the file's name
 };
 
-class BrokenTrack : public ::testing::TestWithParam<Broken> {};
+const BrokenTrack kBrokenTracks[] = {
+    {"empty.csv", ": file: got no points, expected lines of numbers"},
+    {"header_only.csv", ": file: got no points, expected lines of numbers"},
+    {"three_points.csv", ": points: got 3 with 3 different, expected at least 4 different ones"},
+    {"word_for_a_number.csv", ":6: x_m: got abc, expected a finite number with a decimal point"},
+    {"nan.csv", ":7: x_m: got nan, expected a finite number"},
+    {"infinity.csv", ":8: y_m: got inf, expected a finite number"},
+    {"overflow.csv", ":9: x_m: got 1e999, expected a finite number"},
+    {"negative_width.csv", ":10: w_tr_left_m: got -4.8, expected a width > 0 and <= 1000 m"},
+    {"zero_width.csv", ":4: w_tr_right_m: got 0, expected a width > 0"},
+    {"width_in_millimetres.csv", ":5: w_tr_right_m: got 4400, expected a width > 0 and <= 1000 m"},
+    {"missing_column.csv", ":11: row: got 3 columns, expected 4"},
+    {"extra_column.csv", ":12: row: got 5 columns, expected 4"},
+    {"empty_field.csv", ":13: x_m: got nothing, expected a finite number"},
+    {"decimal_commas.csv", ":3: row: got 8 columns, expected 4"},
+    {"no_y_column.csv", ":1: header: got x_m,z_m,w_tr_right_m,w_tr_left_m, expected columns x and y"},
+    {"column_twice.csv", ":1: x_m: got a second such column, expected one"},
+    {"one_width.csv", ":1: header: got only a right width, expected both"},
+    {"three_columns_no_header.csv", ":1: header: got none for 3 columns, expected a line that names them"},
+    {"one_place.csv", ": points: got"},
+    {"merging_roads.csv", ":61: points[59]: got a line that crosses itself near"},
+    {"wrong_order.csv", ":"},
+    {"start_in_words.csv", ":1: start_s_m: got soon, expected a number"},
+    {"closed_yes.csv", ":1: closed: got yes, expected true or false"},
+    {"start_off_the_road.csv", ": start_d: got 7.5, expected a place on the road"},
+    {"far_away.csv", ":14: x_m: got 1e8, expected a coordinate within 1e7 m"},
+    {"other_separator.csv", ":15: row: got 1 columns, expected 4"},
+    {"utf16.csv", ": file: got UTF-16, expected UTF-8"},
+    {"picture.csv", ": file: got an image, expected the YAML file beside it"},
+    {"json.csv", ":1: header: got {\"x\": [1, 2, 3]"},
+    {"hexadecimal.csv", ":16: x_m: got 0x1F, expected a finite number"},
+    {"units_in_values.csv", ":17: x_m: got "},
+    {"degrees.csv", ":1: header: got lat,lon, expected columns x and y"},
+    {"endless_line.csv", ":2: line: got 70000 bytes, expected at most 65536"},
+    {"wide_kerb.csv", ": kerb_width: got 9, expected a number in [0, 3]"}};
 
-TEST_P(BrokenTrack, IsRefusedWithFileAndLine) {
-  const std::string file = kSource + "/tests/protocol/fixtures/tracks/" + GetParam().file;
-  const Result<road::Track> track = read_track(file);
-  ASSERT_FALSE(track);
-  EXPECT_EQ(track.error().code, ErrorCode::kParse);
-  EXPECT_THAT(track.error().message, StartsWith(file + GetParam().message));
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Fixtures, BrokenTrack,
-    ::testing::Values(
-        Broken{"empty.csv", ": file: got no points, expected lines of numbers"},
-        Broken{"header_only.csv", ": file: got no points, expected lines of numbers"},
-        Broken{"three_points.csv", ": points: got 3 with 3 different, expected at least 4 different ones"},
-        Broken{"word_for_a_number.csv", ":6: x_m: got abc, expected a finite number with a decimal point"},
-        Broken{"nan.csv", ":7: x_m: got nan, expected a finite number"},
-        Broken{"infinity.csv", ":8: y_m: got inf, expected a finite number"},
-        Broken{"overflow.csv", ":9: x_m: got 1e999, expected a finite number"},
-        Broken{"negative_width.csv", ":10: w_tr_left_m: got -4.8, expected a width > 0 and <= 1000 m"},
-        Broken{"zero_width.csv", ":4: w_tr_right_m: got 0, expected a width > 0"},
-        Broken{"width_in_millimetres.csv", ":5: w_tr_right_m: got 4400, expected a width > 0 and <= 1000 m"},
-        Broken{"missing_column.csv", ":11: row: got 3 columns, expected 4"},
-        Broken{"extra_column.csv", ":12: row: got 5 columns, expected 4"},
-        Broken{"empty_field.csv", ":13: x_m: got nothing, expected a finite number"},
-        Broken{"decimal_commas.csv", ":3: row: got 8 columns, expected 4"},
-        Broken{"no_y_column.csv",
-               ":1: header: got x_m,z_m,w_tr_right_m,w_tr_left_m, expected columns x and y"},
-        Broken{"column_twice.csv", ":1: x_m: got a second such column, expected one"},
-        Broken{"one_width.csv", ":1: header: got only a right width, expected both"},
-        Broken{"three_columns_no_header.csv",
-               ":1: header: got none for 3 columns, expected a line that names them"},
-        Broken{"one_place.csv", ": points: got"},
-        Broken{"merging_roads.csv", ":61: points[59]: got a line that crosses itself near"},
-        Broken{"wrong_order.csv", ":"},
-        Broken{"start_in_words.csv", ":1: start_s_m: got soon, expected a number"},
-        Broken{"closed_yes.csv", ":1: closed: got yes, expected true or false"},
-        Broken{"start_off_the_road.csv", ": start_d: got 7.5, expected a place on the road"},
-        Broken{"far_away.csv", ":14: x_m: got 1e8, expected a coordinate within 1e7 m"},
-        Broken{"other_separator.csv", ":15: row: got 1 columns, expected 4"},
-        Broken{"utf16.csv", ": file: got UTF-16, expected UTF-8"},
-        Broken{"picture.csv", ": file: got an image, expected the YAML file beside it"},
-        Broken{"json.csv", ":1: header: got {\"x\": [1, 2, 3]"},
-        Broken{"hexadecimal.csv", ":16: x_m: got 0x1F, expected a finite number"},
-        Broken{"units_in_values.csv", ":17: x_m: got "},
-        Broken{"degrees.csv", ":1: header: got lat,lon, expected columns x and y"},
-        Broken{"endless_line.csv", ":2: line: got 70000 bytes, expected at most 65536"},
-        Broken{"wide_kerb.csv", ": kerb_width: got 9, expected a number in [0, 3]"}),
-    [](const auto& each) {
-      const std::string file = each.param.file;
-      return file.substr(0, file.find('.'));
-    });
-
-TEST(CsvTrack, EveryBrokenFixtureIsListed) {
-  std::size_t count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(kSource + "/tests/protocol/fixtures/tracks")) {
-    count += entry.path().extension() == ".csv" ? 1U : 0U;
+TEST(CsvTrack, EveryBrokenFixtureIsRefusedWithFileAndLine) {
+  const std::string folder = kSource + "/tests/protocol/fixtures/tracks/";
+  for (const BrokenTrack& broken : kBrokenTracks) {
+    const Result<road::Track> track = read_track(folder + broken.file);
+    ASSERT_FALSE(track) << broken.file;
+    EXPECT_EQ(track.error().code, ErrorCode::kParse);
+    EXPECT_THAT(track.error().message, StartsWith(folder + broken.file + broken.message));
   }
-  EXPECT_EQ(count, 34U);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}),
+            static_cast<std::ptrdiff_t>(std::size(kBrokenTracks)));
 }
 
 TEST(CsvText, ReadsFiniteNumbersOnly) {
   EXPECT_EQ(number("+1.5e1"), 15.0);
   for (const char* bad : {"", "1.5x", "nan", "inf", "1e999", "--1"}) EXPECT_FALSE(number(bad)) << bad;
   EXPECT_FALSE(number("1,250.5", ';')) << "of thousands";
+}
+
+TEST(TrackCodec, FindsTheFormatByTheEndOfTheName) {
+  for (const std::string_view extension : track_extensions()) {
+    const TrackFormat* const format = track_format_of("roads/mine" + std::string(extension));
+    ASSERT_NE(format, nullptr) << extension;
+    EXPECT_EQ(format->extension, extension);
+    EXPECT_TRUE(extension.starts_with("."));
+  }
+  EXPECT_EQ(track_format_of("cars/road-car.yaml"), nullptr);
+  EXPECT_EQ(track_format_of(""), nullptr);
+}
+
+TEST(TrackCodec, ReadsAFileOfAnUnknownNameAsTheFirstFormat) {
+  EXPECT_EQ(parse_track("x,y\n0,1\n2,3\n", "points.txt")->points.size(), 2U);
+}
+
+TEST(TrackCodec, RefusesTooMuchInEveryFormat) {
+  const std::string large(kMaxTrackBytes + 1, ' ');
+  for (const std::string_view extension : track_extensions()) {
+    EXPECT_THAT(parse_track(large, "a" + std::string(extension)).error().message,
+                HasSubstr(": file: got 67108865 bytes, expected at most 64 MiB"));
+    EXPECT_EQ(parse_track("", "a" + std::string(extension), {.default_left = -1.0}).error().code,
+              ErrorCode::kInvalidArgument);
+  }
+}
+
+TEST(TrackCodec, NamesAMissingFile) {
+  EXPECT_EQ(read_track("no/such/track.csv").error().code, ErrorCode::kNotFound);
+}
+
+TEST(TrackCodec, TheLibraryHasTheTracksOfEveryFormat) {
+  const test::Folder folder;
+  fs::create_directories(folder.path("tracks"));
+  ::setenv("CHICANE_DATA_DIR", folder.path("").c_str(), 1);
+  int number = 0;
+  for (const std::string_view extension : track_extensions()) {
+    const std::string name = "format-" + std::to_string(++number);
+    folder.write("tracks/" + name + std::string(extension), "\n");
+    const auto file = test::good(locate(Shelf::kTrack, name));
+    EXPECT_THAT(*file, ::testing::EndsWith(name + std::string(extension)));
+    const std::vector<Entry> all = entries(Shelf::kTrack);
+    EXPECT_TRUE(std::any_of(all.begin(), all.end(), [&](const Entry& each) { return each.name == name; }));
+  }
+  ::unsetenv("CHICANE_DATA_DIR");
 }
 
 }  // namespace

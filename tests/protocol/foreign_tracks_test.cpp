@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include "chicane/base/math.hpp"
+#include "chicane/protocol/detail/foreign_roads.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/road/track.hpp"
 #include "support/chicane_test.hpp"
+#include "support/folder.hpp"
 #include "support/stadium.hpp"
 
 namespace chicane::protocol {
@@ -27,106 +29,71 @@ struct Kind {
   std::string file;
   double length, length_tolerance;  ///< [m]
   double width, width_tolerance;    ///< everywhere [m]
+  std::string said = {};            ///< in one of the warnings; empty: there are none
   bool is_left = true;              ///< driven counter-clockwise
   TrackReadOptions options = {};
-  std::string said = {};  ///< in one of the warnings; empty: there are none
 };
 
-class ForeignTrack : public ::testing::TestWithParam<Kind> {};
+constexpr double kLength = 245.664, kModel = 0.1 * kLength;
+const TrackReadOptions kSmall{.scale = 0.1}, kReversed{.direction = Direction::kReversed};
+const TrackReadOptions kSmallWithNames{.scale = 0.1, .columns = "x_m,y_m,skip,skip"};
+const TrackReadOptions kNarrowToTheLeft{
+    .default_left = 2.0, .default_right = 2.0, .direction = Direction::kLeft};
 
-TEST_P(ForeignTrack, HasTheLengthTheWidthAndTheDirectionOfTheRoad) {
-  const Kind& kind = GetParam();
-  const std::string file = kData + "tracks/" + kind.file;
-  const Result<std::string> text = test::good(read_file(file));
-  const Result<TrackFile> content = test::good(parse_track(*text, file, kind.options));
-  if (kind.said.empty()) {
-    EXPECT_THAT(content->warnings, IsEmpty());
-  } else {
-    EXPECT_THAT(content->warnings, Contains(AllOf(StartsWith(file), HasSubstr(kind.said))));
-  }
-  const Result<road::Track> track = test::good(make_track(*content));
-  EXPECT_TRUE(track->centre().is_closed());
-  EXPECT_NEAR(track->length(), kind.length, kind.length_tolerance);
-  EXPECT_GT(kind.is_left ? turned(*track) : -turned(*track), 6.0);
-  for (double s = 0.0; s < track->length(); s += 0.01 * track->length()) {
-    EXPECT_NEAR(track->left_width(s) + track->right_width(s), kind.width, kind.width_tolerance) << s;
-    EXPECT_LT(std::fabs(track->centre().at(s).curvature) * kind.length, 40.0)
-        << "the tightest bend has 12.3 of this";
+const Kind kKinds[] = {
+    // Tables: exact but for chords and the smoothing of the corners where straights meet half circles.
+    {"f1tenth_centerline.csv", kModel, 0.03, 0.6, 0.02, "", true, kSmall},
+    {"f1tenth_raceline.csv", kModel, 0.03, 0.9, 0.02,
+     "0.45 m left and 0.45 m right assumed (import --width-m sets it)", true, kSmall},
+    {"tum_centre_line.csv", kLength + 3.14, 0.3, 6.0, 0.1},
+    {"tum_race_line.csv", kLength, 0.3, 9.0, 0.1, "counts from +y"},
+    {"gym_waypoints.csv", kModel, 0.03, 0.9, 0.02, "assumed", true, kSmallWithNames},
+    {"matlab_writematrix.txt", kLength, 0.3, 9.0, 0.1, "4.5 m left and 4.5 m right assumed"},
+    {"matlab_writetable.csv", kLength, 0.3, 6.0, 0.1, "of the whole road, half of it to each side"},
+    {"decimal_commas.csv", kLength, 0.3, 6.0, 0.1},
+    {"clockwise.csv", kLength, 0.3, 9.0, 0.1, "assumed", false},
+    {"utm.csv", kLength, 0.3, 6.0, 0.1},
+    {"autoware.csv", kLength, 0.3, 9.0, 0.1, "unknown columns, ignored"},
+    {"global_waypoints.json", kModel, 0.03, 0.6, 0.02, "centerline_waypoints: taken of the file's lines",
+     true, kSmall},
+    // Cones stand 4 m apart, so fences are chords: 0.1 m of the width in bends, more where cones are
+    // missing.
+    {"cones.csv", kLength, 2.0, 6.0, 0.9, "none on the left side for 1"},
+    {"fssim.yaml", kLength, 2.0, 6.0, 0.9, "none on the right side for 8."},
+    {"cones.sdf", kLength, 2.0, 6.0, 0.9, "start: not in the file"},
+    // Satellite noise of 0.3 m.
+    {"three_laps.gpx", kLength, 3.0, 9.0, 2.0, "laps: the first of 3.0 taken"},
+    {"course.kml", kLength, 0.5, 9.0, 0.7,
+     "noise of 0.05 m estimated from the points (import --smoothing-m sets it)"},
+    {"course.osm", kLength, 0.5, 6.0, 0.7, "way: 2 of 3 ways taken"},
+    {"course.geojson", kLength, 0.5, 6.0, 0.7, "metres east and north of 48.2001"},
+    // Its arcs of 20 m move inwards by 0.07 m where their ends are eased.
+    {"course.xodr", kLength, 0.5, 6.0, 0.1, "lanes: those of type driving"},
+    // What is asked for.
+    {"course.xodr", kLength, 0.5, 6.0, 0.1, "lanes", false, kReversed},
+    {"clockwise.csv", kLength, 0.3, 4.0, 0.1, "2 m left", true, kNarrowToTheLeft}};
+
+TEST(ForeignTracks, HaveTheLengthTheWidthAndTheDirectionOfTheRoad) {
+  for (const Kind& kind : kKinds) {
+    SCOPED_TRACE(kind.file);
+    const std::string file = kData + "tracks/" + kind.file;
+    const auto content = test::good(parse_track(test::content_of(file), file, kind.options));
+    if (kind.said.empty()) {
+      EXPECT_THAT(content->warnings, IsEmpty());
+    } else {
+      EXPECT_THAT(content->warnings, Contains(AllOf(StartsWith(file), HasSubstr(kind.said))));
+    }
+    const Result<road::Track> track = test::good(make_track(*content));
+    EXPECT_TRUE(track->centre().is_closed());
+    EXPECT_NEAR(track->length(), kind.length, kind.length_tolerance);
+    EXPECT_GT(kind.is_left ? turned(*track) : -turned(*track), 6.0);
+    for (double s = 0.0; s < track->length(); s += 0.01 * track->length()) {
+      EXPECT_NEAR(track->left_width(s) + track->right_width(s), kind.width, kind.width_tolerance) << s;
+      EXPECT_LT(std::fabs(track->centre().at(s).curvature) * kind.length, 40.0)
+          << "the tightest bend has 12.3 of this";
+    }
   }
 }
-
-constexpr double kLength = 245.664, kModel = 0.1 * kLength;
-const TrackReadOptions kSmall{.scale = 0.1};
-
-INSTANTIATE_TEST_SUITE_P(
-    Files, ForeignTrack,
-    ::testing::Values(
-        // Tables: exact but for chords and the smoothing of the corners where straights meet half circles.
-        Kind{"f1tenth_centerline.csv", kModel, 0.03, 0.6, 0.02, true, kSmall},
-        Kind{"f1tenth_raceline.csv", kModel, 0.03, 0.9, 0.02, true, kSmall,
-             "0.45 m left and 0.45 m right assumed (import --width-m sets it)"},
-        Kind{"tum_centre_line.csv", kLength + 3.14, 0.3, 6.0, 0.1},
-        Kind{"tum_race_line.csv", kLength, 0.3, 9.0, 0.1, true, {}, "counts from +y"},
-        Kind{"gym_waypoints.csv",
-             kModel,
-             0.03,
-             0.9,
-             0.02,
-             true,
-             {.scale = 0.1, .columns = "x_m,y_m,skip,skip"},
-             "assumed"},
-        Kind{
-            "matlab_writematrix.txt", kLength, 0.3, 9.0, 0.1, true, {}, "4.5 m left and 4.5 m right assumed"},
-        Kind{"matlab_writetable.csv",
-             kLength,
-             0.3,
-             6.0,
-             0.1,
-             true,
-             {},
-             "of the whole road, half of it to each side"},
-        Kind{"decimal_commas.csv", kLength, 0.3, 6.0, 0.1},
-        Kind{"clockwise.csv", kLength, 0.3, 9.0, 0.1, false, {}, "assumed"},
-        Kind{"utm.csv", kLength, 0.3, 6.0, 0.1},
-        Kind{"autoware.csv", kLength, 0.3, 9.0, 0.1, true, {}, "unknown columns, ignored"},
-        Kind{"global_waypoints.json", kModel, 0.03, 0.6, 0.02, true, kSmall,
-             "centerline_waypoints: taken of the file's lines"},
-        // Cones stand 4 m apart, so fences are chords: 0.1 m of the width in bends, more where cones are
-        // missing.
-        Kind{"cones.csv", kLength, 2.0, 6.0, 0.9, true, {}, "none on the left side for 1"},
-        Kind{"fssim.yaml", kLength, 2.0, 6.0, 0.9, true, {}, "none on the right side for 8."},
-        Kind{"cones.sdf", kLength, 2.0, 6.0, 0.9, true, {}, "start: not in the file"},
-        // Satellite noise of 0.3 m.
-        Kind{"three_laps.gpx", kLength, 3.0, 9.0, 2.0, true, {}, "laps: the first of 3.0 taken"},
-        Kind{"course.kml",
-             kLength,
-             0.5,
-             9.0,
-             0.7,
-             true,
-             {},
-             "noise of 0.05 m estimated from the points (import --smoothing-m sets it)"},
-        Kind{"course.osm", kLength, 0.5, 6.0, 0.7, true, {}, "way: 2 of 3 ways taken"},
-        Kind{"course.geojson", kLength, 0.5, 6.0, 0.7, true, {}, "metres east and north of 48.2001"},
-        // Its arcs of 20 m move inwards by 0.07 m where their ends are eased.
-        Kind{"course.xodr", kLength, 0.5, 6.0, 0.1, true, {}, "lanes: those of type driving"},
-        // What is asked for.
-        Kind{"course.xodr", kLength, 0.5, 6.0, 0.1, false, {.direction = Direction::kReversed}, "lanes"},
-        Kind{"clockwise.csv",
-             kLength,
-             0.3,
-             4.0,
-             0.1,
-             true,
-             {.default_left = 2.0, .default_right = 2.0, .direction = Direction::kLeft},
-             "2 m left"}),
-    [](const auto& each) {
-      std::string name = each.param.file + "_" + std::to_string(each.index);
-      std::replace_if(
-          name.begin(), name.end(), [](char c) { return c == '.'; }, '_');
-      return name;
-    });
-
 TEST(ForeignTracks, RefusesInWordsWhatIsNoRoad) {
   const std::map<std::string, std::string> expected{
       {"gym_waypoints.csv",
@@ -315,6 +282,40 @@ TEST(OccupancyMaps, TakeDirectionAndStartFromTheOptions) {
   EXPECT_LT(turned(*right), -6.0);
   EXPECT_NEAR((right->centre().at(0.0).position - Vec2{7.2, 4.5}).norm(), 0.0, 0.5);
   EXPECT_THAT(parse_track(text, file, {.least_width = 3.0}).error().message, HasSubstr("m wide at ("));
+}
+
+TEST(XmlDocument, HasElementsAndNumbersWithTheirLines) {
+  const auto xml = test::good(parse_xml(
+      "<?xml version='1.0'?>\n<a:road id='7' length=' 12.5 '>\n <x>3</x>\n <x>4</x>\n</a:road>", "f.xml"));
+  const pugi::xml_node road = xml->root();
+  EXPECT_STREQ(road.name(), "road") << "without the prefix of its namespace";
+  EXPECT_EQ(xml->line_of(road), 2);
+  EXPECT_EQ(number_at(road, "length"), 12.5);
+  EXPECT_EQ(number_at(road, "width", -1.0), -1.0);
+  const std::vector<pugi::xml_node> found = xml->find_all("x");
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_STREQ(found[1].child_value(), "4");
+  EXPECT_EQ(xml->line_of(found[1]), 4);
+}
+
+TEST(XmlDocument, SaysWhereTextIsNoXml) {
+  EXPECT_THAT(parse_xml("<a>\n<b></a>", "f.xml").error().message,
+              HasSubstr("f.xml:2: file: got XML that cannot be read: Start-end tags mismatch"));
+  EXPECT_THAT(parse_xml("<a/>\n<a/>", "f.xml").error().message,
+              HasSubstr("f.xml:2: file: got XML that cannot"));
+  EXPECT_FALSE(parse_xml("", "f.xml"));
+}
+
+TEST(XmlDocument, EndsAtItsLimits) {
+  const auto fault = [](const std::string& text) { return parse_xml(text, "f.xml").error().message; };
+  EXPECT_THAT(fault("<!DOCTYPE a [<!ENTITY b 'bbbb'>]>\n<a>&b;</a>"),
+              HasSubstr("f.xml:1: file: got XML that cannot be read: entities of its own"));
+  std::string deep;
+  for (int i = 0; i < 65; ++i) deep = "<a>" + deep + "</a>";
+  EXPECT_THAT(fault(deep), HasSubstr("nested more than 64 deep"));
+  std::string many = "<a>";
+  for (int i = 0; i < 2'000'001; ++i) many += "<b/>";
+  EXPECT_THAT(fault(many + "</a>"), HasSubstr("more than 2000000 tags"));
 }
 
 }  // namespace

@@ -6,22 +6,16 @@
 #include <variant>
 
 #include "protocol/decoded_frame.hpp"
+#include "protocol/typescript.hpp"
 #include "protocol/viewer_samples.hpp"
 #include "support/chicane_test.hpp"
+#include "support/folder.hpp"
 
 namespace chicane::protocol {
 namespace {
 
 using test::decoded;
 using test::Values;
-
-void expect_values(const Values& values, const Values& expected) {
-  for (const auto& [name, numbers] : expected) {
-    ASSERT_TRUE(values.contains(name)) << name;
-    ASSERT_EQ(values.at(name).size(), numbers.size()) << name;
-    for (std::size_t i = 0; i < numbers.size(); ++i) EXPECT_DOUBLE_EQ(values.at(name)[i], numbers[i]) << name;
-  }
-}
 
 std::vector<FrameField> rows() {
   std::vector<FrameField> all;
@@ -35,18 +29,12 @@ TEST(FrameFields, WithoutTruthShowWhatWasMeasuredAndLeaveTheRestUnknown) {
   frame.has_truth = false;
   frame.is_judged = false;
   const Values values = decoded(frame);
-  expect_values(values, {{"has_truth", {0}},
-                         {"x_m", {10.1}},
-                         {"y_m", {-20.2}},
-                         {"yaw_rad", {0.51}},
-                         {"vx_mps", {29.5}},
-                         {"speed_mps", {29.5}},
-                         {"measured_x_m", {10.1}},
-                         {"measured_y_m", {-20.2}},
-                         {"measured_yaw_rad", {0.51}},
-                         {"measured_speed_mps", {29.5}},
-                         {"lateral_error_m", {0.3}},
-                         {"heading_error_rad", {-0.03}}});
+  std::istringstream expected(
+      "has_truth 0 x_m 10.1 y_m -20.2 yaw_rad 0.51 vx_mps 29.5 speed_mps 29.5 measured_x_m 10.1 measured_y_m "
+      "-20.2 measured_yaw_rad 0.51 measured_speed_mps 29.5 lateral_error_m 0.3 heading_error_rad -0.03");
+  double number = 0.0;
+  for (std::string name; expected >> name >> number;)
+    EXPECT_THAT(values.at(name), ElementsAre(testing::DoubleEq(number))) << name;
   for (const char* name : {"vy_mps", "yaw_rate_radps", "longitudinal_acceleration_mps2",
                            "lateral_acceleration_mps2", "s_m", "edge_distance_m", "lap_time_s"}) {
     EXPECT_TRUE(std::isnan(values.at(name).at(0))) << name;
@@ -59,15 +47,8 @@ TEST(FrameFields, EachValueHasTheTypeOfItsRowWhateverTheFrameHolds) {
   broken.time = broken.step_time = nan;
   broken.truth = {nan, nan, nan, nan, nan, nan, nan};
   broken.result.report.explanation.cost_term_count = 1'000'000;
-  const std::vector<std::string> types{"builtin_interfaces/Time",
-                                       "bool",
-                                       "int8",
-                                       "uint8",
-                                       "int32",
-                                       "uint32",
-                                       "uint64",
-                                       "float64",
-                                       "float64[]"};
+  std::istringstream words("builtin_interfaces/Time bool int8 uint8 int32 uint32 uint64 float64 float64[]");
+  const std::vector<std::string> types(std::istream_iterator<std::string>{words}, {});
   for (const telemetry::Frame& frame : {telemetry::Frame{}, samples::frame(), broken}) {
     for (const FrameField& row : rows()) EXPECT_EQ(types.at(row.value(frame).index()), row.type) << row.name;
   }
@@ -100,6 +81,19 @@ void expect_constants(std::string_view field, std::string_view prefix,
     EXPECT_EQ(found[i].meaning, words[i].sentence) << name;
     EXPECT_EQ(found[i].severity, words[i].severity) << name;
   }
+}
+
+TEST(TypeScript, RefusesATypeItDoesNotKnow) {
+  EXPECT_THROW(std::ignore = test::typescript("Sample", "geometry_msgs/Point[] points\n"), std::logic_error);
+}
+
+/// CHICANE_WRITE_FIXTURES=1 renews the file: cmake --build --preset release --target renew_fixtures
+TEST(TypeScript, FixturesOfTheDashboardAreUpToDate) {
+  const fs::path path = fs::path(CHICANE_SOURCE_DIR) / "web/src/protocol/messages.ts";
+  if (std::getenv("CHICANE_WRITE_FIXTURES") != nullptr)
+    std::ofstream(path, std::ios::binary) << test::typescript_messages();
+  EXPECT_EQ(test::content_of(path), test::typescript_messages())
+      << "wanted? cmake --build --preset release --target renew_fixtures";
 }
 
 TEST(FrameFields, HaveAConstantForEverySourceReasonAndStatus) {

@@ -5,6 +5,7 @@
 
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/base/math.hpp"
+#include "chicane/protocol/json.hpp"
 #include "support/chicane_test.hpp"
 
 namespace chicane::protocol {
@@ -15,17 +16,11 @@ using Tree = nlohmann::json;
 telemetry::RunSummary example() {
   telemetry::RunSummary run;
   run.track = "lakeside";
-  run.car = "udacity";
-  run.controller = "tracking-mpc";
-  run.preset = "default";
   run.seed = 3;
   run.latency = 0.1;
-  run.laps_wanted = 1;
-  run.laps_completed = 1;
+  run.laps_wanted = run.laps_completed = 1;
   run.completed = true;
-  telemetry::LapSummary lap;
-  lap.lap_time = 28.5;
-  lap.mean_speed = 40.0;
+  telemetry::LapSummary lap{.lap_time = 28.5};
   lap.top_speed = 44.704;
   lap.min_edge_distance = 0.75;
   lap.sector_times = {9.0, 9.5, 10.0};
@@ -54,9 +49,7 @@ TEST(JsonReport, HasEveryDocumentedKey) {
       "track car controller preset seed latency_ms notices completed laps_completed off_track_events "
       "out_of_track_time_s corners laps step_time_is step_time_us solve_time_us solver fallbacks learned "
       "guard_reasons gate_interventions deadline_misses state_hash arithmetic");
-  for (std::string key; keys >> key;) {
-    EXPECT_TRUE(report.contains(key)) << key;
-  }
+  for (std::string key; keys >> key;) EXPECT_TRUE(report.contains(key)) << key;
   for (const char* key : {"lap_time_s", "mean_speed_mps", "top_speed_mps", "top_speed_mph",
                           "rms_lateral_error_m", "max_abs_lateral_error_m", "min_edge_distance_m",
                           "max_lateral_acceleration_mps2", "steering_rate_rms_radps", "sector_times_s",
@@ -155,12 +148,8 @@ TEST(JsonReport, WhatWasNotMeasuredIsNull) {
   const Tree report = Tree::parse(to_json(run));
   EXPECT_TRUE(report["laps"][0]["min_edge_distance_m"].is_null());
   EXPECT_TRUE(report["laps"][0]["gap_to_limit_percent"].is_null());
-}
-
-TEST(JsonReport, NamesThatAreNotUtf8StillGiveJson) {
-  telemetry::RunSummary run = example();
   run.track = "caf\xe9.csv";
-  EXPECT_TRUE(Tree::accept(to_json(run)));
+  EXPECT_TRUE(Tree::accept(to_json(run))) << "a name that is not UTF-8";
 }
 
 TEST(JsonReport, TheTableSaysHowItEnded) {
@@ -189,11 +178,67 @@ TEST(JsonReport, IsReadAsItWasWritten) {
   EXPECT_TRUE(completed_on_road(*read));
 }
 
-TEST(JsonReport, OtherTextIsNoRun) {
+TEST(JsonReport, OtherTextIsNoRunAndMissingNumbersAreNotMeasured) {
   for (const char* text : {"", "{", "[]", "{}", R"({"laps": 3, "total": {}, "completed": true})",
                            R"({"laps": [], "total": {}, "completed": 1})"})
     EXPECT_FALSE(read_run(text)) << text;
-  EXPECT_TRUE(read_run(R"({"laps": [1, {"sector_times_s": [null]}], "total": 7, "completed": false})"));
+  const auto bare = read_run(R"({"laps": [1, {"sector_times_s": [null]}], "total": 7, "completed": false})");
+  ASSERT_TRUE(bare);
+  EXPECT_THAT(to_table(*bare), HasSubstr("\nround trip         not measured\n"));
+  EXPECT_TRUE(Tree::parse(to_json(*bare))["step_time_us"]["p50"].is_null());
+}
+
+TEST(Json, KeepsTheOrderOfItsKeys) {
+  const Json json{{"zeta", 1}, {"alpha", {1.5, "two", nullptr, true}}};
+  EXPECT_EQ(json_text(json), R"({"zeta":1,"alpha":[1.5,"two",null,true]})");
+  EXPECT_EQ(json_text(parse_json(json_text(json))), json_text(json));
+}
+
+TEST(Json, WritesAnyBytesAndAnyNumbersAndIndentsByTwoSpaces) {
+  EXPECT_EQ(json_text({{"a", {{"b", 1}}}}, JsonLayout::kIndented), "{\n  \"a\": {\n    \"b\": 1\n  }\n}");
+  EXPECT_EQ(json_text(Json("\xff|")), "\"\xEF\xBF\xBD|\"");
+  EXPECT_EQ(json_text(Json("\xC3\xA9"), JsonLayout::kAscii), "\"\\u00e9\"");
+  EXPECT_EQ(json_text(Json(std::numeric_limits<double>::infinity())), "null");
+}
+
+TEST(Json, SaysOfAnyTextWhetherItIsJson) {
+  for (const char* text : {"", "{", "[1,]", "1 2", "nan", "{\"a\":1}}", "\"\xff\""})
+    EXPECT_TRUE(parse_json(text).is_discarded()) << text;
+  for (const char* text : {"null", "-1e3", "{}", " [1, {\"a\": []}] ", "\"\\u00e9\""})
+    EXPECT_FALSE(parse_json(text).is_discarded()) << text;
+  EXPECT_EQ(read_json("[1,]").error().byte, 4U);
+  EXPECT_EQ(read_json("[1,2").error().byte, 5U);
+  EXPECT_FALSE(read_json("[1e999]").error().byte);
+  EXPECT_EQ(read_json("[1,2]").value()[1], 2);
+  const std::string deep(100'000, '[');
+  EXPECT_TRUE(parse_json(deep).is_discarded());
+  EXPECT_FALSE(parse_json(deep + std::string(100'000, ']')).is_discarded());
+}
+
+TEST(ReportDocument, KeepsSectionsAndPartsInTheirOrder) {
+  ReportDocument document("sweep", "small & <plain>");
+  document.add_text("10 runs, `laps=1`.");
+  document.begin_section("Tables");
+  document.add_table({"preset", "clean"}, Json::array({{"pid", Json{{"text", "50 %"}, {"share", 0.5}}}}));
+  document.add_grid("one", {"a \\ b", "1"}, Json::array({{"2", "0"}}));
+  EXPECT_EQ(document.text(),
+            R"({"kind":"sweep","title":"small & <plain>","sections":[)"
+            R"({"title":"","parts":[{"part":"text","text":"10 runs, `laps=1`."}]},)"
+            R"({"title":"Tables","parts":[{"part":"table","title":"","columns":["preset","clean"],)"
+            R"("rows":[["pid",{"text":"50 %","share":0.5}]]},)"
+            R"({"part":"grid","title":"one","columns":["a \\ b","1"],"rows":[["2","0"]]}]}]})");
+}
+
+TEST(ReportDocument, PlotsRoundEachAxisToWhatAScreenShows) {
+  ReportDocument document("import", "road");
+  document.begin_map("here", "x [m]");
+  document.add_series("line", "other", "line", {1e6 + 0.123456, 0.0, 1e6 + 1.0, 1e-7, std::nan(""), 2e-7});
+  document.add_series("mark", "soft", "", {0.6});
+  EXPECT_EQ(
+      json_text(parse_json(document.text())["sections"][0]["parts"][0]),
+      R"({"part":"map","title":"here","x":"x [m]","series":[)"
+      R"({"draw":"line","tone":"other","name":"line","values":[1000000.12346,0.0,1000001.0,1e-07,null,2e-07]},)"
+      R"({"draw":"mark","tone":"soft","name":"","values":[0.6]}]})");
 }
 
 }  // namespace

@@ -3,8 +3,13 @@
 
 #include <unistd.h>
 
+#include "chicane/base/text.hpp"
 #include "chicane/model/vehicle.hpp"
+#include "chicane/protocol/data_folders.hpp"
+#include "chicane/protocol/origin.hpp"
 #include "chicane/protocol/schema.hpp"
+#include "chicane/protocol/track_codec.hpp"
+#include "chicane/protocol/yaml_codec.hpp"
 #include "support/chicane_test.hpp"
 #include "support/folder.hpp"
 
@@ -21,11 +26,7 @@ class Library : public testing::Test, protected test::Folder {
   }
 };
 
-std::string error_of(const Request& request) {
-  const Result<Scenario> scenario = compose(request);
-  return scenario ? "" : scenario.error().message;
-}
-
+std::string error_of(const Request& request) { return test::refusal_of(compose(request)); }
 /// Every tunable that differs, as "key: a, b".
 std::vector<std::string> differences(const Scenario& a, const Scenario& b, std::string_view group) {
   std::vector<std::string> found;
@@ -47,13 +48,12 @@ std::vector<std::string> differences(const Scenario& a, const Scenario& b, std::
 TEST_F(Library, RefusesToRaceACarWhoseGripIsNotKnown) {
   const std::string car =
       write("mine.yaml", "# mine\nplant: road-car\nfriction_low: 0\nvehicle:\n  friction: 1.1\n");
-  EXPECT_EQ(error_of({.scenario_file = {}, .settings = {{"car", car}}}), "");
-  const std::string error = error_of({.scenario_file = {}, .settings = {{"car", car}, {"preset", "race"}}});
+  EXPECT_EQ(error_of({"", {{"car", car}}}), "");
+  const std::string error = error_of({"", {{"car", car}, {"preset", "race"}}});
   EXPECT_THAT(error, HasSubstr("mine.yaml:3: friction_low: got 0"));
   EXPECT_THAT(error, HasSubstr("--set friction_low=NUMBER"));
   EXPECT_EQ(error.find('\n'), std::string::npos);
-  const auto stated = test::good(compose(
-      {.scenario_file = {}, .settings = {{"car", car}, {"preset", "race"}, {"friction_low", "0.7"}}}));
+  const auto stated = test::good(compose({"", {{"car", car}, {"preset", "race"}, {"friction_low", "0.7"}}}));
   EXPECT_EQ(stated->assumed_vehicle().friction, 0.7);
   EXPECT_EQ(stated->vehicle.friction, 1.1);
   ASSERT_EQ(stated->notices.size(), 1U);
@@ -63,8 +63,8 @@ TEST_F(Library, RefusesToRaceACarWhoseGripIsNotKnown) {
 TEST_F(Library, TheLeastFrictionIsOfARaceAlone) {
   for (const auto& [preset, low, assumed] :
        {std::tuple{"default", "0.7", 1.2}, {"race", "inf", 1.2}, {"race", "3", 1.2}, {"race", "0.7", 0.7}}) {
-    const auto scenario = test::good(compose(
-        {.scenario_file = {}, .settings = {{"car", "road-car"}, {"preset", preset}, {"friction_low", low}}}));
+    const auto scenario =
+        test::good(compose({"", {{"car", "road-car"}, {"preset", preset}, {"friction_low", low}}}));
     EXPECT_EQ(scenario->assumed_vehicle().friction, assumed) << preset << ' ' << low;
     EXPECT_EQ(scenario->notices.size(), assumed < 1.2 ? 1U : 0U) << preset << ' ' << low;
   }
@@ -86,10 +86,7 @@ TEST_F(Library, EveryShippedPresetLoadsAndSaysWhatItIs) {
 
 TEST_F(Library, EveryShippedScenarioLoads) {
   EXPECT_FALSE(entries(Shelf::kScenario).empty());
-  for (const Entry& entry : entries(Shelf::kScenario)) {
-    const Result<Scenario> scenario = compose({entry.name, {}});
-    EXPECT_TRUE(scenario) << scenario.error().message;
-  }
+  for (const Entry& entry : entries(Shelf::kScenario)) EXPECT_EQ(error_of({entry.name, {}}), "");
 }
 
 TEST_F(Library, PresetDefaultSaysWhatTheCodeSays) {
@@ -116,23 +113,19 @@ TEST_F(Library, LaterLayersWin) {
   EXPECT_EQ(scenario->seed, 4u);
   EXPECT_EQ(std::get<controller::CubicMpcOptions>(scenario->controllers).horizon_steps, 11);
   EXPECT_NEAR(std::get<controller::CubicMpcOptions>(scenario->controllers).speed_reference, 26.8224, 1e-12);
-  scenario = compose({file, {{"preset", "weighted"}}});
-  ASSERT_TRUE(scenario) << scenario.error().message;
+  scenario = test::good(compose({file, {{"preset", "weighted"}}}));
   EXPECT_EQ(scenario->preset, "weighted");
   EXPECT_EQ(std::get<controller::CubicMpcOptions>(scenario->controllers).horizon_steps, 9);
 }
 
-TEST_F(Library, APresetMayBuildOnAnother) {
+TEST_F(Library, APresetMayBuildOnAnotherButNotOnItself) {
   const std::string file = write("mine.yaml", "preset: sixty-mph\ncubic_mpc.horizon_steps: 8\n");
   const Result<Scenario> scenario = test::good(compose({"", {{"preset", file}}}));
-  EXPECT_EQ(std::get<controller::CubicMpcOptions>(scenario->controllers).horizon_steps, 8);
-  EXPECT_EQ(std::get<controller::CubicMpcOptions>(scenario->controllers).latency_handling,
-            controller::LatencyHandling::kPositionOnly);
-}
-
-TEST_F(Library, PresetsThatBuildOnThemselvesEnd) {
-  const std::string file = write("loop.yaml", "preset: " + (folder_ / "loop.yaml").string() + "\n");
-  EXPECT_THAT(error_of({"", {{"preset", file}}}), HasSubstr("more than 8 presets"));
+  const auto& options = std::get<controller::CubicMpcOptions>(scenario->controllers);
+  EXPECT_EQ(options.horizon_steps, 8);
+  EXPECT_EQ(options.latency_handling, controller::LatencyHandling::kPositionOnly);
+  const std::string loop = write("loop.yaml", "preset: " + path("loop.yaml") + "\n");
+  EXPECT_THAT(error_of({"", {{"preset", loop}}}), HasSubstr("more than 8 presets"));
 }
 
 TEST_F(Library, NamesWhatIsKnownWhenANameIsNot) {
@@ -196,12 +189,6 @@ TEST_F(Library, AFolderIsNotAFile) {
   EXPECT_FALSE(compose({(folder_ / "presets").string(), {}}));
 }
 
-std::string all_of(const scenario::Scenario& scenario) {
-  std::string text;
-  for (const Parameter& parameter : list()) text += get_text(scenario, parameter) + "\n";
-  return text;
-}
-
 TEST(RememberedFiles, ComposeTheSameAsFiles) {
   RememberedFiles files;
   for (int round = 0; round < 2; ++round) {
@@ -213,7 +200,7 @@ TEST(RememberedFiles, ComposeTheSameAsFiles) {
         const auto once = compose(request);
         const auto remembered = compose(request, files);
         ASSERT_TRUE(once && remembered);
-        EXPECT_EQ(all_of(*once), all_of(*remembered));
+        EXPECT_EQ(write_document(*once, "all"), write_document(*remembered, "all"));
       }
     }
   }
@@ -246,6 +233,121 @@ TEST(RememberedFiles, AreBoundedInNumber) {
   EXPECT_EQ(reads, 3 * RememberedFiles::kMost);
   ASSERT_TRUE(files.document(Shelf::kPreset, std::to_string(3 * RememberedFiles::kMost - 1), read));
   EXPECT_EQ(reads, 3 * RememberedFiles::kMost);
+}
+
+TEST(Origin, ReadsTheBandsThatIdentifyWrites) {
+  const auto found = identified_in("vehicle:\n  mass_kg: 3.4  # " + band_remark(3.2, 3.6) +
+                                   "\n  roll: 1  # [assumed]\n  width_m: 2  # [plant]\n");
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[0], (IdentifiedValue{"mass_kg", 3.4, 3.2, 3.6}));
+  EXPECT_EQ(found[1].key, "roll");
+  EXPECT_TRUE(std::isnan(found[1].low) && std::isnan(found[1].high));
+}
+
+TEST(Origin, MarksOfOthersAreNoBands) {
+  EXPECT_THAT(identified_in("vehicle:\n  a: 1  # [assumed]\n  b: 2  # [log] from a paper\n"), IsEmpty());
+  EXPECT_THAT(identified_in("a: x  # [log] 1 to 2\nb: 1  # [log] 1 to\n: 1  # [log] to 2\n"), IsEmpty());
+}
+
+TEST(Origin, TheHeadOfAFileIsItsRemarks) {
+  EXPECT_THAT(head_remarks("# SPDX-License-Identifier: MIT\n# A hall\n# closed=true, spacing_m=1\n"
+                           "# note: width=9 assumed\n# x_m,y_m\n1,2\n# behind\n"),
+              ElementsAre("A hall", "width=9 assumed"));
+  EXPECT_THAT(head_remarks("plant: x\n# late\n"), IsEmpty());
+}
+
+TEST(Origin, AHeadOfAnyBytesBecomesShortUtf8) {
+  std::string text;
+  for (int i = 0; i < 40; ++i) text += "# \xff\x01" + std::string(1000, 'a') + "\n";
+  const std::vector<std::string> remarks = head_remarks(text);
+  EXPECT_EQ(remarks.size(), 12U);
+  EXPECT_LE(remarks[0].size(), 300U);
+  for (std::string_view rest = remarks[0]; !rest.empty(); rest.remove_prefix(utf8_length(rest)))
+    ASSERT_GT(utf8_length(rest), 0U) << rest;
+}
+
+TEST(Origin, AShippedCarSaysWhatItIsAndHasNoBands) {
+  const Origin origin = origin_of(*compose({"", {{"car", "road-car"}}}));
+  ASSERT_FALSE(origin.car_notes.empty());
+  EXPECT_THAT(origin.car_notes.front(), HasSubstr("road car"));
+  EXPECT_THAT(origin.identified, IsEmpty());
+  EXPECT_EQ(origin.road_kind, "table of points");
+}
+
+/// "waypoints.gpx" with a kind, and one thing that its reader assumed.
+TEST(Origin, AnImportedRoadSaysWhatItWasReadFromAndWhatWasAssumed) {
+  const auto origin_at = [](const std::string& file) {
+    return origin_of(
+        *test::good(compose({"", {{"track", CHICANE_SOURCE_DIR "/tests/data/tracks/" + file}}})));
+  };
+  for (const auto& [file, kind] : {std::pair{"three_laps.gpx", "GPX"},
+                                   {"course.geojson", "GeoJSON"},
+                                   {"cones.csv", "cones"},
+                                   {"course.xodr", "OpenDRIVE"}})
+    EXPECT_EQ(origin_at(file).road_kind, kind) << file;
+  EXPECT_THAT(origin_at("three_laps.gpx").road_notes,
+              Contains(HasSubstr("width: not in the file, 4.5 m left and 4.5 m right assumed")));
+}
+
+TEST(Origin, ANoteOfARoadIsNoSetting) {
+  const Result<TrackFile> content = test::good(
+      parse_track("# note: track_scale=2\n# note: x_m, y_m\nx_m,y_m\n0,0\n9,0\n9,9\n0,9\n", "a.csv"));
+  EXPECT_EQ(content->points.size(), 4U);
+}
+
+std::vector<std::string> folders_of(const DataOrigins& origins) { return data_folders(origins, "tracks"); }
+
+/// The places that are searched whatever the origins are.
+std::size_t count_of_fixed_places() { return folders_of({}).size(); }
+
+TEST(DataFolders, AreTheWorkingFolderFirstAndTheSystemLast) {
+  const std::vector<std::string> folders = folders_of({});
+  EXPECT_EQ(folders.front(), "./tracks");
+  EXPECT_EQ(folders.back(), "/usr/share/chicane/tracks");
+}
+
+TEST(DataFolders, AreBesideTheProgramAndInThePrefixAndOneFolderFurtherUp) {
+  std::vector<std::string> folders = folders_of({.program = "/none/such/bin/program"});
+  folders.resize(4);
+  EXPECT_THAT(folders, ElementsAre("./tracks", "/none/such/bin/share/chicane/tracks",
+                                   "/none/such/share/chicane/tracks", "/none/share/chicane/tracks"));
+}
+
+TEST(DataFolders, OfTheEnvironmentComeBeforeTheProgramsAndTheLibrarysAfter) {
+  std::vector<std::string> folders =
+      folders_of({.environment = "/mine",
+                  .program = "/none/bin/python3",
+                  .shared_object = "/none/lib/module/chicane.so",
+                  .header = "/none/prefix/include/chicane/protocol/data_folders.hpp"});
+  const auto place = [&](std::string_view folder) {
+    return std::find(folders.begin(), folders.end(), folder) - folders.begin();
+  };
+  EXPECT_EQ(place("/mine/tracks"), 1);
+  EXPECT_LT(place("/none/share/chicane/tracks"), place("/none/lib/module/share/chicane/tracks"));
+  EXPECT_LT(place("/none/lib/module/share/chicane/tracks"), place("/none/prefix/share/chicane/tracks"));
+  EXPECT_LT(place("/none/prefix/share/chicane/tracks"), place("/usr/share/chicane/tracks"));
+}
+
+TEST(DataFolders, AreNamedOnce) {
+  const DataOrigins origins{.program = "/none/bin/program", .shared_object = "/none/bin/program"};
+  EXPECT_EQ(folders_of(origins).size(), count_of_fixed_places() + 3);
+  for (const std::string& here : {std::string("."), std::filesystem::current_path().string()})
+    EXPECT_EQ(folders_of({.environment = here}), folders_of({})) << "the working folder is the first one";
+}
+
+TEST(DataOrigins, AreThisProgramAndNoInstallation) {
+  const DataOrigins origins = data_origins();
+  EXPECT_EQ(std::filesystem::path(origins.program).filename(), "protocol_test");
+  EXPECT_EQ(origins.header, "") << "tests are compiled with the source tree, not with an installation";
+  ::setenv("CHICANE_DATA_DIR", "/mine", 1);
+  EXPECT_EQ(data_origins().environment, "/mine");
+  ::unsetenv("CHICANE_DATA_DIR");
+}
+
+TEST(BuildIds, AreThoseOfThisProgramAndOfItsLibraries) {
+  const std::string ids = build_ids();
+  EXPECT_GE(ids.size(), 40U) << "20 bytes each: this program's, and that of the C library";
+  EXPECT_EQ(build_ids(), ids);
 }
 
 }  // namespace

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/protocol/ros_messages.hpp"
+#include "chicane/protocol/step_codec.hpp"
 
+#include <bit>
 #include <nlohmann/json.hpp>
 
 #include "protocol/cdr_reader.hpp"
 #include "protocol/viewer_samples.hpp"
 #include "support/chicane_test.hpp"
+#include "support/folder.hpp"
 #include "support/roads.hpp"
 
 namespace chicane::protocol {
@@ -171,13 +174,11 @@ TEST(RosMessages, BytesEqualTheFixturesTheBrowserReads) {
     const std::string bytes = encode(each.name);
     list.push_back({{"topic", each.name}, {"type", each.type}, {"file", file}, {"schema", each.schema}});
     if (renew) std::ofstream(folder / file, std::ios::binary) << bytes;
-    std::ifstream stream(folder / file, std::ios::binary);
-    const std::string expected{std::istreambuf_iterator<char>(stream), {}};
-    EXPECT_EQ(bytes, expected) << each.name << kRenew;
+    EXPECT_EQ(bytes, test::content_of(folder / file)) << each.name << kRenew;
   }
   if (renew) std::ofstream(folder / "topics.json") << list.dump(1) << '\n';
-  std::ifstream stream(folder / "topics.json");
-  EXPECT_EQ(nlohmann::ordered_json::parse(stream, nullptr, false), list) << kRenew;
+  EXPECT_EQ(nlohmann::ordered_json::parse(test::content_of(folder / "topics.json"), nullptr, false), list)
+      << kRenew;
 }
 
 TEST(RosMessages, RoadLinesCloseAndKeepTheirWidths) {
@@ -203,6 +204,58 @@ TEST(RosMessages, ReadTheTextOfAQuestionAndNothingElse) {
                                    "\0\1\0\0\377\377\377\377hi\0"s, "\0\2\0\0\3\0\0\0hi\0"s}) {
     EXPECT_FALSE(decode_ask(bytes)) << bytes.size();
   }
+}
+
+TEST(StepCodec, KeepsEveryBit) {
+  telemetry::Frame frame;
+  frame.cycle = 7;
+  frame.measurement.x = std::bit_cast<double>(0x7ff8000000000123ULL);  // a not-a-number with a payload
+  frame.measurement.waypoint_count = 2;
+  frame.measurement.waypoints[1] = {-0.0, 5e-324};
+  frame.result.command = {.steer = 0.1, .throttle = -0.3};
+  frame.is_manual = true;
+  frame.manual = {.steer = -0.2, .throttle = 0.4};
+  frame.gate_interval = 0.040000000001;
+  frame.longest_interval = 0.42;
+  frame.deadline_spent_at = 9;
+  frame.begins = true;
+  frame.has_measurement = false;
+  const auto step = test::good(decode_step(encode_step(frame)));
+  EXPECT_EQ(step->cycle, 7U);
+  EXPECT_EQ(std::bit_cast<std::uint64_t>(step->measurement.x), 0x7ff8000000000123ULL);
+  EXPECT_TRUE(std::signbit(step->measurement.waypoints[1].x()));
+  EXPECT_EQ(step->measurement.waypoints[1].y(), 5e-324);
+  EXPECT_EQ(step->command.throttle, -0.3);
+  ASSERT_TRUE(step->manual);
+  EXPECT_EQ(step->manual->steer, -0.2);
+  EXPECT_EQ(step->gate_interval, 0.040000000001);
+  EXPECT_EQ(step->longest_interval, 0.42);
+  EXPECT_EQ(step->deadline_spent_at, 9U);
+  EXPECT_TRUE(step->begins);
+  EXPECT_FALSE(step->has_measurement);
+}
+
+TEST(StepCodec, RefusesEveryShorterAndALongerMessage) {
+  telemetry::Frame frame;
+  frame.measurement.waypoint_count = 3;
+  const std::string bytes = encode_step(frame);
+  for (std::size_t size = 0; size < bytes.size(); ++size)
+    EXPECT_FALSE(decode_step(std::string_view(bytes).substr(0, size))) << size;
+  EXPECT_FALSE(decode_step(bytes + "x"));
+}
+
+TEST(StepCodec, ReadsChangesOfAnyLength) {
+  for (const char* name : {"a", "ab", "abc", "abcd", "tracking_mpc.horizon_steps"}) {
+    const std::string bytes = encode_change(12.25, 306, name, "20");
+    const auto change = test::good(decode_change(bytes));
+    EXPECT_EQ(change->name.view(), name);
+    EXPECT_EQ(change->value.view(), "20");
+    EXPECT_EQ(change->cycle, 306U);
+    EXPECT_EQ(change->time, 12.25);
+    for (std::size_t size = 0; size < bytes.size(); ++size)
+      EXPECT_FALSE(decode_change(std::string_view(bytes).substr(0, size))) << size;
+  }
+  EXPECT_FALSE(decode_change(encode_change(0.0, 0, std::string(65, 'x'), "")));
 }
 
 }  // namespace

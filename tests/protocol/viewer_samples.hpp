@@ -13,11 +13,7 @@ inline telemetry::Frame frame() {
   frame.has_truth = true;
   frame.is_judged = true;
   frame.truth = {.x = 10.0, .y = -20.0, .psi = 0.5, .vx = 30.0, .vy = -0.4, .r = 0.25, .steer = 0.03};
-  frame.measurement.time = 12.25;
-  frame.measurement.x = 10.1;
-  frame.measurement.y = -20.2;
-  frame.measurement.psi = 0.51;
-  frame.measurement.speed = 29.5;
+  frame.measurement = {.time = 12.25, .x = 10.1, .y = -20.2, .psi = 0.51, .speed = 29.5};
   controller::Plan& plan = frame.result.plan;
   plan.size = 3;
   for (int i = 0; i < plan.size; ++i) {

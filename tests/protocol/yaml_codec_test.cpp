@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/protocol/yaml_codec.hpp"
 
-#include "chicane/base/random.hpp"
+#include "chicane/protocol/library.hpp"
+#include "chicane/protocol/schema_json.hpp"
+#include "chicane/protocol/yaml_tree.hpp"
 #include "support/chicane_test.hpp"
 #include "support/folder.hpp"
 
@@ -21,10 +23,7 @@ Result<Scenario> load(std::string_view text, const std::string& file) {
   return scenario;
 }
 
-std::string error_of(std::string_view text) {
-  const Result<Scenario> scenario = load(text, "f");
-  return scenario ? "" : scenario.error().message;
-}
+std::string error_of(std::string_view text) { return test::refusal_of(load(text, "f")); }
 
 struct Broken {
   const char* name;
@@ -177,34 +176,6 @@ TEST(YamlCodec, MoreValuesThanAFileMayHaveAreRefused) {
   EXPECT_THAT(error_of(text + "]"), HasSubstr("1: file: got more than 50000 values, expected fewer"));
 }
 
-TEST(YamlCodec, WhatItWritesItReadsBack) {
-  Random random(3);
-  for (int round = 0; round < 50; ++round) {
-    Scenario scenario;
-    for (const Parameter& parameter : list()) {
-      if (random.uniform() < 0.5 || parameter.key == "preset" || parameter.key == "controller") continue;
-      if (parameter.group == "plant_params" && scenario.plant != "double-track") continue;
-      if (parameter.option.kind == Kind::kNumber || parameter.option.kind == Kind::kInteger) {
-        const double value = random.uniform(parameter.option.minimum, parameter.option.maximum);
-        ASSERT_TRUE(
-            set(scenario, parameter, parameter.option.kind == Kind::kInteger ? std::floor(value) : value));
-      } else if (parameter.option.kind == Kind::kText) {
-        ASSERT_TRUE(set(scenario, parameter, std::string("a \"b\\ #: ö\n\tc")));
-      } else if (parameter.option.kind == Kind::kBool) {
-        ASSERT_TRUE(set(scenario, parameter, random.uniform() < 0.5));
-      } else {
-        ASSERT_TRUE(set(scenario, parameter, std::string(parameter.option.choices.back())));
-      }
-    }
-    const std::string text = write_document(scenario, "written by a test,\nin two lines");
-    const Result<Scenario> read_back = load(text, "f");
-    ASSERT_TRUE(read_back) << read_back.error().message << "\n" << text;
-    for (const Parameter& parameter : list()) {
-      EXPECT_EQ(get_text(scenario, parameter), get_text(*read_back, parameter)) << parameter.key;
-    }
-  }
-}
-
 TEST(YamlCodec, WritesOnlyWhatDiffers) {
   Scenario scenario;
   scenario.laps = 9;
@@ -245,6 +216,135 @@ TEST(YamlCodec, WritesAPresetThatBuildsOnAnother) {
   const Result<Document> read = test::good(parse_document(write_preset(changed, base, "Mine"), "mine.yaml"));
   EXPECT_EQ(read->preset, "sixty-mph");
   EXPECT_EQ(read->assignments.size(), 4U);
+}
+
+/// Everything that readers of a tree look at.
+std::string written(const YamlNode& node) {
+  std::string text = std::to_string(static_cast<int>(node.kind)) + " " + node.text;
+  if (node.kind != YamlNode::Kind::kNothing) text += "@" + std::to_string(node.line);
+  if (node.is_scalar()) text += node.tag;
+  for (const YamlNode* child : node.children) text += "(" + written(*child) + ")";
+  return text;
+}
+
+/// kinds, lines and texts of both parsers
+void expect_same(const std::string& text, const std::string& file) {
+  const auto plain = parse_plain_yaml(text, file);
+  const auto whole = parse_yaml(text, file);
+  ASSERT_TRUE(plain) << plain.error().message;
+  ASSERT_TRUE(whole) << whole.error().message;
+  EXPECT_EQ(written(*plain->root), written(*whole->root)) << file;
+}
+
+TEST(PlainYaml, ReadsAllShippedPresetsAndCarsAsTheWholeParserDoes) {
+  int read = 0;
+  for (const Shelf shelf : {Shelf::kPreset, Shelf::kCar}) {
+    for (const Entry& entry : entries(shelf)) {
+      const auto text = test::good(read_file(entry.file));
+      expect_same(*text, entry.file);
+      ++read;
+    }
+  }
+  EXPECT_GE(read, 12);
+}
+
+TEST(PlainYaml, ReadsWhatTheirKindMayHave) {
+  for (const std::string text :
+       {"", "# nothing\n", "a: 1", "a: 1\nb:\n  c: -2.5 # why\n  d: x#y\ne: .inf\r\n",
+        "a:\n    b:\n     c: 1\n    d: 2\n", "a:\nb: 1\n", "a: two words\n\n\n# end\nb: http://x\n"}) {
+    expect_same(text, "file.yaml");
+  }
+}
+
+TEST(PlainYaml, RefusesWhatOnlyTheWholeParserUnderstandsWithItsLine) {
+  for (const std::string text :
+       {"a: 1\nb: [1, 2]", "a: 1\n- b", "a: 1\nb: \"c\"", "a: 1\n\tb: 2", "a: 1\nb", "a: 1\n  b: 2",
+        "a: 1\nb: {c: 1}", "a: 1\nb: &x 1", "a: 1\nb: |", "a: 1\n--- ", "a: 1\nb: c: 2"}) {
+    EXPECT_THAT(test::refusal_of(parse_plain_yaml(text, "file.yaml")), StartsWith("file.yaml:2: ")) << text;
+  }
+}
+
+std::string refusal(std::string_view text) { return test::refusal_of(parse_fault(text)); }
+
+TEST(FaultText, NamesAFaultItsTimeAndPerhapsMore) {
+  const auto all = test::good(parse_fault("half_grip@12+5*0.25"));
+  EXPECT_EQ(all->fault, sim::fault_named("half_grip"));
+  EXPECT_EQ(all->at, 12.0);
+  EXPECT_EQ(all->duration, 5.0);
+  EXPECT_EQ(all->strength, 0.25);
+  const auto least = test::good(parse_fault("link_lost@0.5"));
+  EXPECT_EQ(least->duration, sim::kind_of(*sim::fault_named("link_lost")).duration);
+}
+
+TEST(FaultText, SaysWhatIsWrongAndWhatWasMeant) {
+  EXPECT_THAT(refusal("half_girp@12"), HasSubstr("did you mean half_grip?"));
+  EXPECT_THAT(refusal("half_grip"), HasSubstr("faults.at_s: got nothing"));
+  EXPECT_THAT(refusal("half_grip@-1"), HasSubstr("faults.at_s: got -1, expected a number in [0, "));
+  EXPECT_THAT(refusal("half_grip@1+"), HasSubstr("faults.for_s: got +"));
+  EXPECT_THAT(refusal("half_grip@1*7"), HasSubstr("faults.strength: got 7, expected a number in [0.05, 1]"));
+  EXPECT_THAT(refusal("link_lost@1*7"), HasSubstr("link_lost has no strength"));
+  EXPECT_THAT(refusal(""), HasSubstr("faults.name: got nothing"));
+  EXPECT_THAT(refusal("half_grip@nan"), HasSubstr("faults.at_s"));
+}
+
+TEST(FaultYaml, IsAListInAScenarioAndComesBackTheSame) {
+  const auto document = test::good(parse_document(
+      "laps: 2\nfaults:\n  - {name: half_grip, at_s: 12, for_s: 5, strength: 0.3}\n  - name: link_lost\n    "
+      "at_s: 20.1\n",
+      "wet.yaml"));
+  scenario::Scenario scenario;
+  const std::array layers{*document};
+  ASSERT_TRUE(apply_layers(layers, scenario));
+  ASSERT_EQ(scenario.faults.size(), 2U);
+  EXPECT_EQ(scenario.faults[0].strength, 0.3);
+  EXPECT_EQ(scenario.faults[1].at, 20.1);
+
+  const std::string text = write_document(scenario, "test", true);
+  const auto again = test::good(parse_document(text, "again.yaml"));
+  ASSERT_TRUE(again->faults);
+  ASSERT_EQ(again->faults->size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ((*again->faults)[i].fault, scenario.faults[i].fault);
+    EXPECT_EQ((*again->faults)[i].at, scenario.faults[i].at);
+    EXPECT_EQ((*again->faults)[i].duration, scenario.faults[i].duration);
+    EXPECT_EQ((*again->faults)[i].strength, scenario.faults[i].strength);
+  }
+}
+
+TEST(FaultYaml, RefusesWithFileLineAndKey) {
+  const auto refused = [](const std::string& text) {
+    return test::refusal_of(parse_document(text, "f.yaml"));
+  };
+  EXPECT_THAT(refused("faults: 3\n"), HasSubstr("f.yaml:1: faults: got 3, expected a list"));
+  EXPECT_THAT(refused("faults:\n  - 3\n"), HasSubstr("f.yaml:2: faults: got 3, expected {name: half_grip"));
+  EXPECT_THAT(refused("faults:\n  - {name: half_grip, at: 3}\n"),
+              HasSubstr("f.yaml:2: at: got an unknown key, expected name"));
+  EXPECT_THAT(refused("laps: 1\nfaults:\n  - {name: hlaf_grip, at_s: 3}\n"),
+              HasSubstr("f.yaml:3: faults.name: got hlaf_grip"));
+  EXPECT_THAT(refused("faults:\n  - {name: half_grip, at_s: [1]}\n"),
+              HasSubstr("f.yaml:2: at_s: got a list, expected text"));
+  EXPECT_THAT(refused("faults:\n  - {name: half_grip, at_s: 1, for_s: 0}\n"),
+              HasSubstr("faults.for_s: got 0"));
+}
+
+TEST(FaultControls, AreSwitchedWithDurationAndStrength) {
+  const auto plain = test::good(read_switch("half_grip", "true"));
+  EXPECT_EQ(plain->duration, sim::default_event(plain->fault, 0.0).duration);
+  const auto chosen = test::good(read_switch("half_grip", "+7.5*0.25"));
+  EXPECT_EQ(chosen->duration, 7.5);
+  EXPECT_EQ(chosen->strength, 0.25);
+  EXPECT_EQ(read_switch("half_grip", "*0.25")->duration, plain->duration);
+  for (const char* wrong : {"", "1", "yes", "+", "+-1", "+5*9", "+5@3", "+nan"})
+    EXPECT_FALSE(read_switch("half_grip", wrong)) << wrong;
+  EXPECT_THAT(read_switch("half_grip", "+5*9").error().message, HasSubstr("fault.half_grip: got +5*9"));
+}
+
+TEST(FaultControls, AreOneSwitchForEach) {
+  const auto controls = fault_controls();
+  ASSERT_EQ(controls.size(), sim::fault_kinds().size());
+  EXPECT_EQ(controls[0].key, "fault.link_lost");
+  EXPECT_EQ(controls[0].option.kind, Kind::kBool);
+  EXPECT_EQ(controls[0].fault, &sim::fault_kinds()[0]);
 }
 
 }  // namespace

@@ -11,16 +11,12 @@ namespace chicane::recording {
 inline std::vector<telemetry::Frame> record_run(const std::string& path, const std::string& track,
                                                 const std::string& laps) {
   const auto loop = test::loop_of(test::scenario_of({{"track", track}, {"laps", laps}}));
-  RecorderOptions options;
-  options.path = path;
+  RecorderOptions options{.path = path, .run = {}, .scenario = loop->scenario(), .may_wait = true};
   options.run.track = track;
   options.run.track_length = loop->track().length();
   options.run.vehicle = loop->scenario().vehicle;
   options.run.road = protocol::road_lines(loop->track(), 2.0);
-  options.scenario = loop->scenario();
-  options.may_wait = true;
-  const auto recorder = Recorder::create(options);
-  EXPECT_TRUE(recorder);
+  const auto recorder = test::good(Recorder::create(options));
   std::vector<telemetry::Frame> frames;
   static_cast<void>(run::run_closed_loop(
       *loop, {.on_frame =

@@ -3,6 +3,8 @@
 
 #include "chicane/base/math.hpp"
 #include "support/chicane_test.hpp"
+#include "support/roads.hpp"
+#include "support/stadium.hpp"
 
 namespace chicane::road {
 namespace {
@@ -10,33 +12,11 @@ namespace {
 /// Straights of `straight` and half circles of `radius` [m], counter-clockwise; the first point is the middle
 /// of the lower straight.
 std::vector<TrackPoint> oval(double straight, double radius, double width, bool is_mirrored = false) {
-  std::vector<TrackPoint> points;
-  const double round = 2.0 * straight + kTwoPi * radius;
-  const int count = static_cast<int>(round / (0.4 * width));
-  for (int i = 0; i < count; ++i) {
-    double s = round * i / count + 0.5 * straight;
-    double x = 0.0, y = 0.0;
-    if (s >= round) s -= round;
-    if (s < straight) {
-      x = s - 0.5 * straight;
-      y = -radius;
-    } else if (s < straight + kPi * radius) {
-      const double angle = (s - straight) / radius - 0.5 * kPi;
-      x = 0.5 * straight + radius * std::cos(angle);
-      y = radius * std::sin(angle);
-    } else if (s < 2.0 * straight + kPi * radius) {
-      x = 0.5 * straight - (s - straight - kPi * radius);
-      y = radius;
-    } else {
-      const double angle = (s - 2.0 * straight - kPi * radius) / radius + 0.5 * kPi;
-      x = -0.5 * straight + radius * std::cos(angle);
-      y = radius * std::sin(angle);
-    }
-    points.push_back({{x, is_mirrored ? -y : y}, 0.5 * width, 0.5 * width});
-  }
-  return points;
+  const int count = static_cast<int>((2.0 * straight + kTwoPi * radius) / (0.4 * width));
+  std::vector<Vec2> line = test::even_stadium(count, radius, straight, 0.5 * straight);
+  for (Vec2& point : line) point.y() *= is_mirrored ? -1.0 : 1.0;
+  return test::with_widths(line, 0.5 * width, 0.5 * width);
 }
-
 Track track(const std::vector<TrackPoint>& points, const TrackOptions& options = {}, bool is_closed = true) {
   return *Track::create("test", points, is_closed, options);
 }
@@ -87,18 +67,12 @@ TEST(Corners, ScaleWithTheRoad) {
   EXPECT_NEAR(corners[0].turn, kPi, 0.05);
 }
 
-TEST(Corners, AreNotThereOnAWideCircleOrAStraight) {
+TEST(Corners, AreNotThereOnACircleOrAStraight) {
   EXPECT_TRUE(corners_of(track(oval(1.0, 400.0, 10.0))).empty());
-  std::vector<TrackPoint> straight;
-  for (int i = 0; i < 20; ++i) straight.push_back({{10.0 * i, 0.0}, 4.0, 4.0});
-  const Track road = track(straight, {}, false);
+  EXPECT_TRUE(corners_of(track(oval(0.0, 60.0, 10.0))).empty()) << "one bend without beginning or end";
+  const Track road = test::straight_road(19, 4.0, 4.0, {});
   EXPECT_TRUE(corners_of(road).empty());
   EXPECT_TRUE(corner_sectors(road, {}).empty());
-}
-
-TEST(Corners, OfACircleAreNone) {
-  // One bend without beginning or end.
-  EXPECT_TRUE(corners_of(track(oval(0.0, 60.0, 10.0))).empty());
 }
 
 TEST(Corners, OfAnOpenRoadEndWithIt) {

@@ -1,37 +1,23 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/road/known_road.hpp"
 
+#include "chicane/road/racing_road.hpp"
+
 #include "road/sample_loop.hpp"
 #include "support/chicane_test.hpp"
+#include "support/roads.hpp"
+#include "support/stadium.hpp"
 
 namespace chicane::road {
 namespace {
 
-/// A circle of 100 m to the left, 4 m of road on its left, 6 m on its right.
-road::RoadData ring() {
-  road::RoadData data;
-  data.is_closed = true;
-  data.length = kTwoPi * 100.0;
-  constexpr int kCount = 314;
-  for (int i = 0; i <= kCount; ++i) {
-    const double angle = kTwoPi * i / kCount;
-    data.points.push_back({.s = data.length * i / kCount,
-                           .position = {100.0 * std::sin(angle), 100.0 - 100.0 * std::cos(angle)},
-                           .heading = angle,
-                           .curvature = 0.01,
-                           .left = 4.0,
-                           .right = 6.0});
-  }
-  return data;
-}
-
 TEST(KnownRoad, KnowsATracksEdgesFromTheBeginning) {
-  const KnownRoad road(ring(), model::udacity_params());
+  const KnownRoad road(road_data(test::circle_road(100.0, 200, 4.0, 6.0), 2.0), model::udacity_params());
   ASSERT_TRUE(road.line().is_closed());
   EXPECT_NEAR(road.line().length(), kTwoPi * 100.0, 10.0);
   for (double s = -300.0; s < 1000.0; s += 37.0) {
     const CurvePoint at = road.line().at(s);
-    const double radius = (at.position - Vec2{0.0, 100.0}).norm();
+    const double radius = at.position.norm();
     const KnownRoad::Edges edges = road.edges(s);
     EXPECT_NEAR(radius - edges.left, 96.0, 0.05)
         << s << ": the edge stays where it is, wherever the line runs";
@@ -49,15 +35,12 @@ TEST(KnownRoad, HasTheEdgesOfBendsThatItsLineCuts) {
     data.length = 2.0 * (kStraight + kPi * kRadius);
     const int count = static_cast<int>(data.length);
     for (int i = 0; i <= count; ++i) {
-      const double s = data.length * i / count, half = 0.5 * data.length;
-      const double on = s < half ? s : s - half, turned = s < half ? 0.0 : kPi;
-      const double angle = std::clamp((on - kStraight) / kRadius, 0.0, kPi);
-      Vec2 at = {std::min(on, kStraight) + kRadius * std::sin(angle), kRadius * (1.0 - std::cos(angle))};
-      if (s >= half) at = Vec2{kStraight, 2.0 * kRadius} - at;
+      const double s = data.length * i / count;
+      const auto [at, heading, curvature] = test::stadium_place(s, kRadius, kStraight);
       data.points.push_back({.s = s,
                              .position = {at.x(), side * at.y()},
-                             .heading = side * (angle + turned),
-                             .curvature = angle > 0.0 ? side / kRadius : 0.0,
+                             .heading = side * heading,
+                             .curvature = side * curvature,
                              .left = kWidth,
                              .right = kWidth});
     }

@@ -3,7 +3,9 @@
 
 #include "chicane/base/math.hpp"
 #include "chicane/road/known_road.hpp"
+#include "road/sample_loop.hpp"
 #include "support/chicane_test.hpp"
+#include "support/roads.hpp"
 
 namespace chicane::road {
 namespace {
@@ -71,12 +73,9 @@ TEST(RacingRoad, StopsBeforeTheEndOfAnOpenRoad) {
 /// `side`: 1 to the left, -1 mirrored.
 TEST(RacingRoad, HasTheRoomAcrossItsLine) {
   for (const double side : {1.0, -1.0}) {
-    std::vector<TrackPoint> points;
-    for (int i = 0; i < 90; ++i) {
-      const double angle = side * kTwoPi * i / 90.0;
-      points.push_back({{12.0 * std::cos(angle), 12.0 * std::sin(angle)}, 6.0, 6.0});
-    }
-    const Track track = *Track::create("circle", points, true);
+    std::vector<Vec2> circle = test::circle_points(12.0, 90);
+    for (Vec2& point : circle) point.y() *= side;
+    const Track track = *Track::create("circle", test::with_widths(circle, 6.0, 6.0), true);
     std::vector<LinePoint> lap(91);
     for (int i = 0; i <= 90; ++i) {
       const double angle = side * kTwoPi * i / 90.0;
@@ -141,6 +140,58 @@ TEST(KnownRoadFromWaypoints, TakesALearnedLapUntilItsWaypointsAreForgotten) {
   EXPECT_FALSE(road.is_raced());
   EXPECT_NE(road.revision(), raced);
   EXPECT_TRUE(road.line().is_empty());
+}
+
+std::shared_ptr<const RacingRoad> raced_lap(bool is_learned) {
+  return std::make_shared<const RacingRoad>(lap(1.0), 0.0, RacingRoad::Basis{.is_learned = is_learned});
+}
+/// Drives round until the loop is closed and its lap is planned.
+void learn(DrivenRoad& road, const std::vector<Vec2>& points) {
+  for (int i = 0; i < 2000 && road.seen().closed_waypoints().empty(); ++i)
+    EXPECT_TRUE(road.add(seeing(points, i < 60 ? i : i / 8)));
+  ASSERT_EQ(road.seen().closed_waypoints().size(), points.size());
+}
+
+TEST(DrivenRoad, IsWhatWaypointsShowUntilALapIsRacedBy) {
+  DrivenRoad road({}, model::udacity_params());
+  EXPECT_TRUE(road.line().is_empty());
+  learn(road, stadium());
+  EXPECT_NEAR(road.line().length(), road.seen().line().length(), 1e-12);
+  const unsigned before = road.revision();
+  road.race_by(raced_lap(true));
+  EXPECT_TRUE(road.is_raced());
+  EXPECT_NE(road.revision(), before);
+  EXPECT_NEAR(road.line().length(), kTwoPi * kBendRadius, 0.1);
+  road.race_by(nullptr);
+  EXPECT_FALSE(road.is_raced());
+  EXPECT_NEAR(road.line().length(), road.seen().line().length(), 1e-12);
+}
+
+TEST(DrivenRoad, GivesUpALearnedLapWithTheWaypointsItWasMadeOf) {
+  DrivenRoad road({}, model::udacity_params());
+  const std::vector<Vec2> points = stadium();
+  std::vector<Vec2> elsewhere = points;
+  for (Vec2& point : elsewhere) point += Vec2{1000.0, 0.0};
+  learn(road, points);
+  road.race_by(raced_lap(true));
+  EXPECT_TRUE(road.add(seeing(points, 7)));
+  EXPECT_TRUE(road.is_raced());
+  EXPECT_FALSE(road.add(seeing(elsewhere, 7)));
+  EXPECT_FALSE(road.is_raced());
+  learn(road, elsewhere);
+  road.race_by(raced_lap(true));
+  road.reset();
+  EXPECT_FALSE(road.is_raced());
+  EXPECT_TRUE(road.line().is_empty());
+}
+
+TEST(DrivenRoad, KeepsALapOfATrackThatItWasTold) {
+  DrivenRoad road({}, model::udacity_params());
+  road.race_by(raced_lap(false));
+  EXPECT_TRUE(road.add(seeing(stadium(), 0)));
+  EXPECT_TRUE(road.seen().line().is_empty()) << "waypoints tell nothing then";
+  road.reset();
+  EXPECT_TRUE(road.is_raced());
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
 #include "support/chicane_test.hpp"
+#include "support/roads.hpp"
 #include "support/stadium.hpp"
 
 namespace chicane::road {
@@ -11,13 +12,7 @@ namespace {
 
 std::vector<Vec2> circle(int count, double sigma) {
   Random random{3};
-  std::vector<Vec2> points;
-  for (int i = 0; i < count; ++i) {
-    const double angle = kTwoPi * i / count;
-    const double radius = 50.0 + sigma * random.normal();
-    points.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
-  }
-  return points;
+  return test::points_round(count, [&](double /*angle*/) { return 50.0 + sigma * random.normal(); });
 }
 
 TEST(SmoothLine, KeepsAStraightLineExactlyAndSpacesItEvenly) {
@@ -80,21 +75,16 @@ TEST(SmoothLine, FindsTheNoiseOfThePoints) {
 // Files of 300 and of six points took 12 GB and a minute.
 TEST(SmoothLine, RefusesPointsBetweenWhichThereAreTooManyKnots) {
   for (const int count : {6, 60, 300}) {
-    std::vector<Vec2> points;
-    for (int i = 0; i < count; ++i) {
-      const double angle = kTwoPi * i / count;
-      const double radius = 1500.0 + (count == 6 ? 300.0 * std::sin(2.1 * i) : 0.0);
-      points.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
-    }
+    int i = 0;
+    const auto points = test::points_round(
+        count, [&](double) { return 1500.0 + (count == 6 ? 300.0 * std::sin(2.1 * i++) : 0.0); });
     constexpr double kFinest = 0.05;    // spacing [m]
     constexpr double kMostNoise = 1.0;  // sigma [m]
     const Result<SmoothLine> line = smooth_line(points, true, kFinest, kMostNoise);
     if (line) {
       EXPECT_LT(line->knots.size(), 400'000U) << count;
     } else {
-      EXPECT_NE(line.error().message.find("points: got points that no smooth line follows"),
-                std::string::npos)
-          << line.error().message;
+      EXPECT_THAT(line.error().message, HasSubstr("points: got points that no smooth line follows"));
     }
   }
 }

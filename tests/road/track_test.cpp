@@ -28,8 +28,7 @@ std::vector<TrackPoint> loop_points(int count, double sigma, std::uint64_t seed 
 }
 
 std::string refusal(const std::vector<TrackPoint>& points, bool closed, const TrackOptions& options = {}) {
-  const Result<Track> track = Track::create("test", points, closed, options);
-  return track ? std::string{"accepted"} : track.error().message;
+  return test::refusal_of(Track::create("test", points, closed, options));
 }
 
 TEST(Track, FollowsCleanPointsToTheMillimetre) {
@@ -228,41 +227,30 @@ TEST(Track, RefusesALineThatLeavesAPointByTheRoadsWidth) {
       << words;
 }
 
-/// A figure of eight, `height` m high on each side, 4 m to each edge.
-std::vector<TrackPoint> eight_points(double height) {
-  std::vector<TrackPoint> points;
-  for (int i = 0; i < 200; ++i) {
-    const double angle = kTwoPi * (i + 0.25) / 200.0;
-    points.push_back({{100.0 * std::sin(angle), height * std::sin(2.0 * angle)}, 4.0, 4.0});
-  }
-  return points;
+/// 4 m to each edge.
+std::vector<TrackPoint> eight(double height, double shift = 0.25) {
+  return test::with_widths(test::eight_points(200, height, shift), 4.0, 4.0);
 }
-
 TEST(Track, TakesARoadThatCrossesItself) {
-  const Track track = Track::create("eight", eight_points(60.0), true).value();
+  const Track track = Track::create("eight", eight(60.0), true).value();
   EXPECT_EQ(track.crossings(), 1);
   EXPECT_NEAR(track.centre().turning(), 0.0, 1e-9);
   EXPECT_EQ(Track::create("loop", loop_points(200, 0.0), true)->crossings(), 0);
   // The seam may lie at the crossing itself, with a point of each passage in the same place.
-  std::vector<TrackPoint> points;
-  for (int i = 0; i < 200; ++i) {
-    const double angle = kTwoPi * i / 200.0;
-    points.push_back({{100.0 * std::sin(angle), 60.0 * std::sin(2.0 * angle)}, 4.0, 4.0});
-  }
-  EXPECT_EQ(Track::create("eight", points, true).value().crossings(), 1);
+  EXPECT_EQ(Track::create("eight", eight(60.0, 0.0), true).value().crossings(), 1);
 }
 
 TEST(Track, RefusesRoadsThatMergeAndNamesThePoint) {
-  const std::string message = refusal(eight_points(12.0), true);  // cross at 27 degrees
+  const std::string message = refusal(eight(12.0), true);  // cross at 27 degrees
   EXPECT_TRUE(message.starts_with("points[199]: got a line that crosses itself near (")) << message;
   EXPECT_NE(message.find("after points[99], expected no crossing, or one of at least 30 degrees"),
             std::string::npos)
       << message;
-  EXPECT_EQ(refusal(eight_points(15.0), true), "accepted");  // at 33 degrees
+  EXPECT_EQ(refusal(eight(15.0), true), "");  // at 33 degrees
 }
 
 TEST(Track, RefusesALineThatCrossesItself) {
-  std::vector<TrackPoint> loop;
+  std::vector<TrackPoint> loop, out_and_back;
   for (int i = 0; i < 40; ++i) loop.push_back({{-200.0 + 5.0 * i, 0.0}, 4.0, 4.0});
   for (int i = 0; i < 12; ++i) {  // a circle of 4.5 m, as measurements that jump back make it
     const double angle = kTwoPi * i / 12.0;
@@ -271,7 +259,6 @@ TEST(Track, RefusesALineThatCrossesItself) {
   for (int i = 1; i < 40; ++i) loop.push_back({{5.0 * i, 0.5 * i}, 4.0, 4.0});
   std::vector<TrackPoint> in_the_wrong_order = loop_points(200, 0.0);
   std::reverse(in_the_wrong_order.begin() + 60, in_the_wrong_order.begin() + 120);
-  std::vector<TrackPoint> out_and_back;
   for (int i = 0; i < 50; ++i) out_and_back.push_back({{5.0 * i, 0.0}, 4.0, 4.0});
   for (std::size_t i = 50; i-- > 0;) out_and_back.push_back(out_and_back[i]);
   EXPECT_THAT(refusal(loop, false, {.spacing = 0.5}), HasSubstr("crosses itself"));
@@ -320,10 +307,30 @@ TEST(Track, ScaledIsTheSameRoadSmaller) {
 TEST(Track, JudgesAHundredThousandPoints) {
   // Also a time limit in effect: a comparison of all pairs would take minutes and trip the test's time-out.
   std::vector<TrackPoint> points = loop_points(100000, 0.0);
-  EXPECT_EQ(refusal(points, true), "accepted");
+  EXPECT_EQ(refusal(points, true), "");
   Random random{3};
   for (TrackPoint& p : points) p.position = {random.uniform(0.0, 10.0), random.uniform(0.0, 10.0)};
-  EXPECT_NE(refusal(points, true), "accepted");
+  EXPECT_NE(refusal(points, true), "");
+}
+
+/// A circle of 50 m whose points are `off` [m] inside and outside in turns.
+Track rough_circle(double off, double sigma) {
+  bool is_inside = false;
+  const auto points = test::points_round(120, [&](double) {
+    is_inside = !is_inside;
+    return is_inside ? 50.0 + off : 50.0 - off;
+  });
+  return *Track::create("circle", test::with_widths(points, 4.0, 4.0), true, {.smoothing_sigma = sigma});
+}
+
+TEST(PointFit, IsTheNoiseThatSmoothingTookAway) {
+  const PointFit fit = point_fit(rough_circle(0.2, 0.2));
+  EXPECT_NEAR(fit.rms, 0.2, 0.03);  // the smooth line follows the noise a little
+  EXPECT_GE(fit.most, fit.rms);
+}
+
+TEST(PointFit, IsNothingForALineThroughItsPoints) {
+  EXPECT_LT(point_fit(rough_circle(0.0, 0.0)).most, 0.01);  // resampled every 2 m: chords of the spline
 }
 
 }  // namespace

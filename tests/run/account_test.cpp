@@ -3,19 +3,20 @@
 
 #include "chicane/base/math.hpp"
 #include "chicane/sim/plant_registry.hpp"
+#include "support/alloc_guard.hpp"
 #include "support/chicane_test.hpp"
 #include "support/roads.hpp"
 
 namespace chicane::run {
 namespace {
 
-constexpr double kRadius = 200.0;
+constexpr double kWideRadius = 200.0;
 
 /// The original's car on a circle, with the account of its run.
 class AccountTest : public ::testing::Test {
  protected:
   void stand(double distance, double heading, double speed) {
-    world_.reset({.x = kRadius + distance, .y = 0.0, .psi = heading}, speed);
+    world_.reset({.x = kWideRadius + distance, .y = 0.0, .psi = heading}, speed);
   }
   /// Physics for so long, or until the run is over.
   double drive(Account& account, double seconds, double throttle, bool is_manual = false) {
@@ -27,7 +28,7 @@ class AccountTest : public ::testing::Test {
     return world_.time() - start;
   }
 
-  road::Track track_ = test::circle_road(kRadius, 200, 5.0, 5.0, {});
+  road::Track track_ = test::circle_road(kWideRadius, 200, 5.0, 5.0, {});
   std::unique_ptr<sim::Plant> plant_ = std::move(*sim::make_plant("udacity", {}));
   sim::World world_{*plant_, track_};
 };
@@ -35,6 +36,8 @@ class AccountTest : public ::testing::Test {
 TEST_F(AccountTest, GivesACarUpThatStandsFarFromTheRoad) {
   Account account({.laps = 1});
   stand(40.0, 0.0, 0.0);
+  drive(account, 60.0, 0.0, true);
+  EXPECT_FALSE(account.is_over()) << "a person drives";
   EXPECT_NEAR(drive(account, 100.0, 0.0), Account::kLostTime, 0.1);
   EXPECT_TRUE(account.is_over() && account.is_lost());
   EXPECT_EQ(account.summary().end_reason, "the car left the road and did not come back");
@@ -47,13 +50,6 @@ TEST_F(AccountTest, WaitsForACarThatComesBack) {
   drive(account, 40.0, 0.05);  // slowly, and for longer than a lost car is waited for
   EXPECT_FALSE(account.is_over()) << world_.state().lateral_error;
   EXPECT_LT(std::fabs(world_.state().lateral_error), 148.0);
-}
-
-TEST_F(AccountTest, NeverGivesACarUpThatAPersonDrives) {
-  Account account({.laps = 1});
-  stand(40.0, 0.0, 0.0);
-  drive(account, 60.0, 0.0, true);
-  EXPECT_FALSE(account.is_over());
 }
 
 TEST_F(AccountTest, ARunUntilStoppedGoesOnWhateverHappens) {
@@ -116,6 +112,251 @@ TEST_F(AccountTest, RemembersAThousandLapsOfARunUntilStopped) {
   for (seen.lap = 1; seen.lap <= 1200; ++seen.lap) account.add_sighting(seen);
   EXPECT_EQ(account.summary().laps_completed, 1200);
   EXPECT_EQ(account.summary().laps.size(), 1000U);
+}
+
+constexpr double kRadius = 60.0;
+constexpr double kSpeed = 12.0;
+constexpr double kLapTime = kTwoPi * kRadius / kSpeed;
+constexpr double kPeriod = 0.12;  // of telemetry with the original's latency [s]
+
+/// Circle about the origin, counter-clockwise, s = 0 at (kRadius, 0), 5 m to the left edge and 4 m to the
+/// right.
+road::Track circle() {
+  return test::circle_road(kRadius, 120, 5.0, 4.0, {.spacing = 2.0, .smoothing_sigma = 0.0});
+}
+
+/// Somebody else's car that goes round, as telemetry tells of it.
+class Telemetry {
+ public:
+  explicit Telemetry(Roadside& roadside) : roadside_{roadside} {}
+  const telemetry::Frame& next(double left = 0.0) {
+    const double angle = kSpeed / kRadius * driven_for_;
+    frame_->time = 100.0 + driven_for_;
+    frame_->has_measurement = true;
+    frame_->measurement.x = (kRadius - left) * std::cos(angle);
+    frame_->measurement.y = (kRadius - left) * std::sin(angle);
+    frame_->measurement.psi = angle + kPi / 2.0;
+    frame_->measurement.speed = kSpeed;
+    roadside_.judge(*frame_);
+    driven_for_ += kPeriod;
+    return *frame_;
+  }
+  const telemetry::Frame& broken() {
+    frame_->has_measurement = false;
+    roadside_.judge(*frame_);
+    return *frame_;
+  }
+  [[nodiscard]] double driven_for() const { return driven_for_; }
+
+ private:
+  Roadside& roadside_;
+  double driven_for_ = 0.0;
+  std::unique_ptr<telemetry::Frame> frame_ = std::make_unique<telemetry::Frame>();
+};
+
+TEST(Roadside, TimesLapsOfACarThatOthersSimulate) {
+  const road::Track track = circle();
+  Roadside roadside(&track, {});
+  Telemetry car(roadside);
+  EXPECT_TRUE(car.next().is_judged);
+  while (car.driven_for() < 2.5 * kLapTime) car.next();
+  const telemetry::Frame& frame = car.next(1.5);
+  EXPECT_EQ(frame.lap, 2);
+  EXPECT_NEAR(frame.lateral_error, 1.5, 1e-3);
+  EXPECT_NEAR(frame.s, kRadius * (kSpeed / kRadius * (car.driven_for() - kPeriod) - 2.0 * kTwoPi), 0.1);
+  EXPECT_EQ(frame.completed_lap.lap, 2);
+  EXPECT_TRUE(frame.completed_lap.is_clean);
+  // Even motion is interpolated; the spline through 120 points errs by 1e-4 of a length at most.
+  EXPECT_NEAR(frame.completed_lap.lap_time, kLapTime, 1e-4 * kLapTime);
+  for (const double sector : frame.completed_lap.sector_times) EXPECT_NEAR(sector, kLapTime / 3.0, 2e-3);
+  EXPECT_NEAR(frame.completed_lap.mean_speed, kSpeed, 1e-9);
+
+  const telemetry::RunSummary run = roadside.summary();
+  EXPECT_EQ(run.track, "circle");
+  ASSERT_EQ(run.laps.size(), 2U);
+  EXPECT_EQ(run.laps[1].lap_time, frame.completed_lap.lap_time);
+  EXPECT_NEAR(run.laps[1].rms_lateral_error, 0.0, 1e-3);
+  EXPECT_EQ(run.off_track_events, 0);
+  EXPECT_GT(run.laps[1].min_edge_distance, 1.0);
+}
+
+TEST(Roadside, SeesWheelsBeyondTheEdge) {
+  const road::Track track = circle();
+  Roadside roadside(&track, {});
+  Telemetry car(roadside);
+  while (car.driven_for() < 1.2 * kLapTime) car.next(car.driven_for() < 0.5 * kLapTime ? 4.8 : 0.0);
+  const telemetry::RunSummary run = roadside.summary();
+  ASSERT_EQ(run.laps.size(), 1U);
+  EXPECT_LT(run.laps[0].min_edge_distance, 0.0);
+  EXPECT_EQ(run.off_track_events, 1);
+  EXPECT_NEAR(run.out_of_track_time, 0.5 * kLapTime, 2.0 * kPeriod);
+  EXPECT_FALSE(car.next().completed_lap.is_clean);
+}
+
+TEST(Roadside, TimesLapsAndJudgesNothingOnARoadThatNobodyKnows) {
+  Roadside roadside(nullptr, {});
+  Telemetry car(roadside);
+  int cycles = 1;
+  for (; car.driven_for() < 2.2 * kLapTime; ++cycles) EXPECT_FALSE(car.next().is_judged);
+  EXPECT_EQ(car.next().lap, 2);
+  const auto lap = test::good(roadside.take_lap());
+  EXPECT_NEAR(lap->lap_time, kLapTime, 1e-3 * kLapTime);
+  EXPECT_FALSE(std::isfinite(lap->min_edge_distance));
+  const telemetry::RunSummary run = roadside.summary();
+  EXPECT_EQ(run.track, "");
+  EXPECT_EQ(static_cast<int>(run.cycles), cycles);
+  ASSERT_EQ(run.laps.size(), 2U);
+  EXPECT_NEAR(run.laps[1].mean_speed, kSpeed, 1e-9);
+  EXPECT_NEAR(run.total.mean_speed, kSpeed, 1e-9);
+  EXPECT_TRUE(std::isnan(run.total.min_edge_distance));
+  EXPECT_EQ(run.off_track_events, 0);
+}
+
+TEST(Roadside, ForgetsWhatWasJudgedByAnotherRoad) {
+  const road::Track track = circle();
+  Roadside roadside(&track, {});
+  Telemetry car(roadside);
+  EXPECT_TRUE(car.next(20.0).is_off_track);
+  roadside.forget_track();
+  EXPECT_FALSE(car.next().is_judged);
+  while (car.driven_for() < 1.2 * kLapTime) car.next();
+  const telemetry::RunSummary run = roadside.summary();
+  EXPECT_EQ(run.track, "");
+  EXPECT_EQ(run.off_track_events, 0);
+  EXPECT_EQ(run.laps_completed, 1);
+}
+
+TEST(Roadside, KeepsTheLapsOverTelemetryThatWasBroken) {
+  const road::Track track = circle();
+  Roadside roadside(&track, {});
+  Telemetry car(roadside);
+  while (car.driven_for() < 1.1 * kLapTime) car.next();
+  const telemetry::Frame& broken = car.broken();
+  EXPECT_FALSE(broken.is_judged);
+  EXPECT_EQ(broken.completed_lap.lap, 1);
+}
+
+TEST(Roadside, GoesOnCountingWithTheNextCar) {
+  const road::Track track = circle();
+  Roadside roadside(&track, {});
+  Telemetry first(roadside);
+  while (first.driven_for() < 1.7 * kLapTime) first.next();
+  roadside.resume();
+  Telemetry second(roadside);
+  EXPECT_EQ(second.next(6.0).lap, 1) << "the lap that was under way does not count";
+  EXPECT_TRUE(roadside.take_lap());
+  EXPECT_FALSE(roadside.take_lap()) << "each lap is told once";
+  while (second.driven_for() < 1.1 * kLapTime) second.next();
+  EXPECT_EQ(second.next().lap, 2);
+  EXPECT_EQ(roadside.take_lap()->lap, 2);
+  const telemetry::RunSummary run = roadside.summary();
+  ASSERT_EQ(run.laps.size(), 2U);
+  EXPECT_NEAR(run.laps[0].lap_time, kLapTime, 1e-3 * kLapTime);
+  EXPECT_NEAR(run.laps[1].lap_time, kLapTime, 2e-2 * kLapTime);  // it began beside the line
+  EXPECT_EQ(run.end_reason, "stopped");
+}
+
+TEST(Roadside, AllocatesNothingWhileItLooks) {
+  const road::Track track = circle();
+  Roadside roadside(&track, {});
+  Telemetry car(roadside);
+  car.next();
+  const test::AllocationGuard guard;
+  while (car.driven_for() < 1.5 * kLapTime) car.next();
+  EXPECT_EQ(guard.count(), 0);
+}
+
+/// A car that goes round a circle, `left` metres beside its line; `way` < 0: the other way round.
+struct Car {
+  double angle = 0.3;
+  double time = 100.0;
+  void drive(LapLearner& learner, double duration, double left = 0.0, double way = 1.0) {
+    for (double end = time + duration; time < end; time += kPeriod) {
+      const double radius = kRadius - left;
+      learner.see(
+          time,
+          {.x = radius * std::cos(angle), .y = radius * std::sin(angle), .psi = angle + way * kPi / 2.0},
+          kSpeed);
+      angle += way * kSpeed / kRadius * kPeriod;
+    }
+  }
+};
+
+TEST(LapLearner, TimesLapsFromWhereTheCarWasFirstSeen) {
+  LapLearner learner;
+  Car car;
+  car.drive(learner, 0.9 * kLapTime);
+  EXPECT_EQ(learner.state().lap, 0);
+  car.drive(learner, 0.2 * kLapTime);
+  EXPECT_EQ(learner.state().lap, 1);
+  // Between two sightings the car goes straight: 0.12 s on 60 m are 1e-4 of a lap.
+  EXPECT_NEAR(learner.state().last_lap_time, kLapTime, 1e-3 * kLapTime);
+  EXPECT_NEAR(learner.state().lap_time, 0.1 * kLapTime, 2.0 * kPeriod);
+  car.drive(learner, kLapTime, 3.0);
+  EXPECT_EQ(learner.state().lap, 2);
+  EXPECT_NEAR(learner.state().best_lap_time, kLapTime, 1e-3 * kLapTime);
+  EXPECT_TRUE(std::isnan(learner.state().last_sector_times[0])) << "of a road that nobody knows";
+}
+
+TEST(LapLearner, ACarThatGoesBackAndForthOverTheLineDrivesNoLap) {
+  LapLearner learner;
+  Car car;
+  for (int i = 0; i < 10; ++i) {
+    car.drive(learner, 0.1 * kLapTime);
+    car.drive(learner, 0.2 * kLapTime, 0.0, -1.0);
+    car.drive(learner, 0.1 * kLapTime);
+  }
+  EXPECT_EQ(learner.state().lap, 0);
+}
+
+TEST(LapLearner, AShortCutIsNoLapOnceALapIsKnown) {
+  LapLearner learner;
+  Car car;
+  car.drive(learner, 1.05 * kLapTime);
+  ASSERT_EQ(learner.state().lap, 1);
+  for (double left = 0.0; left < 14.0; left += 1.0) car.drive(learner, kPeriod, left);
+  car.drive(learner, 1.0 * kLapTime, 14.0);  // a smaller circle, 77 % of the lap
+  EXPECT_EQ(learner.state().lap, 1);
+  EXPECT_LT(learner.state().lap_time, 0.2 * kLapTime) << "the next one has begun";
+}
+
+TEST(LapLearner, ACarThatWasMovedBeginsAnew) {
+  LapLearner learner;
+  Car car;
+  car.drive(learner, 0.5 * kLapTime);
+  car.angle += kPi;
+  car.drive(learner, 0.6 * kLapTime);
+  EXPECT_EQ(learner.state().lap, 0);
+  car.drive(learner, 0.5 * kLapTime);
+  EXPECT_EQ(learner.state().lap, 1);
+}
+
+TEST(LapLearner, ForgetsWhenReset) {
+  LapLearner learner;
+  Car car;
+  car.drive(learner, 0.7 * kLapTime);
+  learner.reset();
+  car.drive(learner, 0.7 * kLapTime);
+  EXPECT_EQ(learner.state().lap, 0);
+  EXPECT_NEAR(learner.state().lap_time, 0.7 * kLapTime, 2.0 * kPeriod);
+}
+
+// A figure of eight that is begun at its crossing: half a lap later another road leads over the start line.
+TEST(LapLearner, CountsALapOfAFigureOfEightOnce) {
+  for (const double height : {15.0, 25.0, 40.0, 60.0, 120.0}) {  // crosses at 33 to 135 degrees
+    for (double begin = -0.03; begin <= 0.031; begin += 0.005) {
+      LapLearner learner;
+      const double step = 0.002;  // of a lap
+      for (int i = 0; i <= 1100; ++i) {
+        const double angle = kTwoPi * (begin + step * i);
+        const double psi = std::atan2(2.0 * height * std::cos(2.0 * angle), 100.0 * std::cos(angle));
+        learner.see(i * 0.1, {.x = 100.0 * std::sin(angle), .y = height * std::sin(2.0 * angle), .psi = psi},
+                    25.0);
+      }
+      EXPECT_EQ(learner.state().lap, 2) << height << ' ' << begin;
+      EXPECT_NEAR(learner.state().best_lap_time, 50.0, 0.05) << height << ' ' << begin;
+    }
+  }
 }
 
 }  // namespace

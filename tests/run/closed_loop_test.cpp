@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 
-#include <tuple>
-
+#include "chicane/controller/controller.hpp"
 #include "chicane/run/run_steps.hpp"
 #include "chicane/sim/plant_registry.hpp"
 #include "support/chicane_test.hpp"
+#include "support/own_controller.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::run {
@@ -113,7 +113,7 @@ TEST(ClosedLoop, LookedAtBeforeEachStepDrivesTheSame) {
   scenario::Scenario scenario = scenario_of("udacity", "oval", 1);
   scenario.sensor = {.position_noise = 0.1, .heading_noise = 0.01, .speed_noise = 0.2, .latency = 0.03};
   scenario.faults = {sim::default_event(*sim::fault_named("gps_noise"), 3.0)};
-  const auto loop = std::move(*ClosedLoop::create(scenario));
+  const auto loop = test::loop_of(scenario);
   while (!loop->is_over()) {
     const bool is_due = loop->is_control_due();
     const model::Measurement first = loop->look();
@@ -141,33 +141,21 @@ INSTANTIATE_TEST_SUITE_P(Tracks, ShippedTrack, ::testing::Values("lakeside", "ov
                          [](const auto& track) { return std::string(track.param); });
 
 TEST(ClosedLoop, OfARunUntilStoppedGoesOnAfterAnExcursionByHand) {
-  scenario::Scenario scenario = scenario_of("udacity", "oval", 0);
-  const auto loop = std::move(*ClosedLoop::create(scenario));
+  const auto loop = test::loop_of(scenario_of("udacity", "oval", 0));
+  const auto steer = [&](const char* value, double until) {
+    loop->apply({.name = "manual.steer", .value = value});
+    while (loop->time() < until) {
+      if (loop->is_control_due()) loop->apply({.name = "manual.throttle", .value = "0.5"});
+      static_cast<void>(loop->advance());
+    }
+  };
   loop->apply({.name = "manual.is_on", .value = "true"});
-  loop->apply({.name = "manual.throttle", .value = "0.5"});
-  loop->apply({.name = "manual.steer", .value = "1"});
-  while (loop->time() < 20.0) {
-    if (loop->is_control_due()) loop->apply({.name = "manual.throttle", .value = "0.5"});
-    static_cast<void>(loop->advance());
-  }
-  loop->apply({.name = "manual.steer", .value = "0"});
-  while (loop->time() < 30.0) {
-    if (loop->is_control_due()) loop->apply({.name = "manual.throttle", .value = "0.5"});
-    static_cast<void>(loop->advance());
-  }
+  steer("1", 20.0);
+  steer("0", 30.0);
   ASSERT_GT(std::fabs(loop->world().lateral_error), 25.0) << "a person has left the road";
   loop->apply({.name = "manual.is_on", .value = "false"});
   while (loop->time() < 120.0 && !loop->is_over()) static_cast<void>(loop->advance());
   EXPECT_FALSE(loop->is_over());
-}
-
-TEST(ClosedLoop, DoesTheSameTwice) {
-  const scenario::Scenario scenario = scenario_of("udacity", "lakeside", 1);
-  const telemetry::RunSummary first = test::drive(scenario);
-  EXPECT_EQ(first.state_hash, test::drive(scenario).state_hash);
-  scenario::Scenario other = scenario;
-  other.latency = 0.1001;
-  EXPECT_NE(first.state_hash, test::drive(other).state_hash) << "the hash sees what happens";
 }
 
 TEST(ClosedLoop, SeesTheSeedOnlyWhereThereIsNoise) {
@@ -183,7 +171,7 @@ TEST(ClosedLoop, SeesTheSeedOnlyWhereThereIsNoise) {
 
 TEST(ClosedLoop, RestartsAsIfItWereNew) {
   const scenario::Scenario scenario = scenario_of("udacity", "oval", 1);
-  std::unique_ptr<ClosedLoop> loop = std::move(*ClosedLoop::create(scenario));
+  const auto loop = test::loop_of(scenario);
   for (int i = 0; i < 500; ++i) loop->advance();
   loop->restart();
   EXPECT_EQ(run_closed_loop(*loop).state_hash, test::drive(scenario).state_hash);
@@ -195,27 +183,23 @@ TEST(ClosedLoop, SaysWhyItEnded) {
   const telemetry::RunSummary late = test::drive(scenario);
   EXPECT_FALSE(late.completed);
   EXPECT_EQ(late.end_reason, "time limit reached");
-  std::unique_ptr<ClosedLoop> loop = std::move(*ClosedLoop::create(scenario));
+  const auto loop = test::loop_of(scenario);
   EXPECT_EQ(run_closed_loop(*loop, {}, [] { return true; }).end_reason, "stopped");
 }
 
 TEST(ClosedLoop, RefusesWhatItCannotBuildAndNamesIt) {
   scenario::Scenario scenario = scenario_of("udacity", "lakeside", 1);
   scenario.controller = "crystal-ball";
-  const auto controller = ClosedLoop::create(scenario);
-  ASSERT_FALSE(controller);
-  EXPECT_NE(controller.error().message.find("controller: got crystal-ball"), std::string::npos);
+  EXPECT_THAT(test::refusal_of(ClosedLoop::create(scenario)), HasSubstr("controller: got crystal-ball"));
   scenario = scenario_of("udacity", "lakeside", 1);
   scenario.track = "nowhere";
-  const auto track = ClosedLoop::create(scenario);
-  ASSERT_FALSE(track);
-  EXPECT_NE(track.error().message.find("nowhere"), std::string::npos);
+  EXPECT_THAT(test::refusal_of(ClosedLoop::create(scenario)), HasSubstr("nowhere"));
 }
 
 TEST(RealtimeLoop, DoesWhatTheFastLoopDoesAndObeysItsControls) {
   scenario::Scenario scenario = scenario_of("udacity", "oval", 1);
   scenario.time_limit = 2.0;
-  std::unique_ptr<ClosedLoop> loop = std::move(*ClosedLoop::create(scenario));
+  const auto loop = test::loop_of(scenario);
   loop->apply({.name = "run.pace", .value = "20"});
   RunControls controls;
   controls.is_paused = true;
@@ -233,7 +217,7 @@ TEST(RealtimeLoop, DoesWhatTheFastLoopDoesAndObeysItsControls) {
 }
 
 TEST(RealtimeLoop, ShowsWhereAPausedRunBegins) {
-  std::unique_ptr<ClosedLoop> loop = std::move(*ClosedLoop::create(scenario_of("udacity", "oval", 1)));
+  const auto loop = test::loop_of(scenario_of("udacity", "oval", 1));
   RunControls controls;
   controls.is_paused = true;
   std::vector<double> times;
@@ -249,7 +233,7 @@ TEST(RealtimeLoop, ShowsWhereAPausedRunBegins) {
 TEST(ClosedLoop, ChangesSignalsByAnInterceptor) {
   scenario::Scenario scenario = scenario_of("udacity", "oval", 0);
   scenario.guard.mode = safety::GuardMode::kOff;
-  const auto loop = std::move(*ClosedLoop::create(scenario));
+  const auto loop = test::loop_of(scenario);
   loop->intercept({.measured = [](model::Measurement& now) { now.speed = 3.0; },
                    .actuated =
                        [](double time, model::Command& command) {
@@ -263,7 +247,7 @@ TEST(ClosedLoop, ChangesSignalsByAnInterceptor) {
 }
 
 TEST(ClosedLoop, PutsTheCarSomewhereWithoutTellingTheController) {
-  const auto loop = std::move(*ClosedLoop::create(scenario_of("udacity", "oval", 0)));
+  const auto loop = test::loop_of(scenario_of("udacity", "oval", 0));
   const model::State start = loop->car();
   while (loop->time() < 8.0) loop->advance();
   const std::uint64_t cycle = loop->cycle();
@@ -273,6 +257,122 @@ TEST(ClosedLoop, PutsTheCarSomewhereWithoutTellingTheController) {
   EXPECT_LT(loop->car().vx, 0.5);
   EXPECT_NEAR(loop->time(), 8.0, 0.05);
   EXPECT_GE(loop->cycle(), cycle);
+}
+
+using test::Settings;
+
+std::unique_ptr<ClosedLoop> noisy_loop(Settings settings) {
+  settings.insert(settings.begin(), {{"laps", "0"}, {"sensor.position_noise_m", "0.02"}});
+  return test::loop_of(test::scenario_of(settings));
+}
+
+void drive(ClosedLoop& loop, double seconds) {
+  const double end = loop.time() + seconds;
+  while (loop.time() < end) loop.advance();
+}
+
+/// Every number that the car and its controller come to from now on, step by step.
+std::vector<double> future_of(ClosedLoop& loop, double seconds) {
+  std::vector<double> all;
+  const double end = loop.time() + seconds;
+  while (loop.time() < end) {
+    if (!loop.advance()) continue;
+    const telemetry::Frame& frame = loop.frame();
+    all.insert(all.end(), {frame.time, frame.truth.x, frame.truth.y, frame.truth.psi, frame.measurement.x,
+                           frame.result.command.steer, frame.result.command.throttle, frame.applied.steer,
+                           frame.lateral_error, frame.edge_distance, static_cast<double>(frame.lap),
+                           static_cast<double>(frame.active_faults), frame.result.plan.points[1].x});
+  }
+  return all;
+}
+
+void expect_same(const std::vector<double>& a, const std::vector<double>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (std::isnan(a[i]) && std::isnan(b[i])) continue;
+    ASSERT_EQ(a[i], b[i]) << "number " << i % 13 << " of control step " << i / 13;
+  }
+}
+
+struct Case {
+  const char* name;
+  Settings settings;
+};
+
+class Copied : public testing::TestWithParam<Case> {};
+
+TEST_P(Copied, GoesOnLikeTheRunToTheLastBitAndLeavesItAlone) {
+  const auto run = noisy_loop(GetParam().settings);
+  // From standstill, in the first lap while the road is being learned, and at the line while it is planned
+  // anew.
+  for (const double wait : {0.1, 3.0, 12.0, 12.0, 4.0}) {
+    drive(*run, wait);
+    SCOPED_TRACE(run->time());
+    auto first = run->copy();
+    auto second = first->copy();
+    const auto was = future_of(*first, 3.0);
+    first.reset();  // what the second one still asked of it would be gone
+    drive(*run, 0.5);
+    expect_same(future_of(*second, 3.0), was);
+  }
+  // The run itself is not touched by any of it.
+  const auto alone = noisy_loop(GetParam().settings);
+  while (alone->time() < run->time()) alone->advance();
+  expect_same(future_of(*run, 3.0), future_of(*alone, 3.0));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Runs, Copied,
+    testing::Values(Case{"default", {}}, Case{"road_car", {{"car", "road-car"}}},
+                    Case{"race", {{"preset", "race"}}},
+                    Case{"race_from_waypoints",
+                         {{"preset", "race"}, {"guard.road", "waypoints"}, {"track", "oval"}}},
+                    Case{"model_car", {{"car", "f1tenth"}}},
+                    Case{"cubic_mpc", {{"controller", "cubic-mpc"}, {"track", "oval"}}},
+                    Case{"pid", {{"controller", "pid"}, {"track", "oval"}}},
+                    Case{"pure_pursuit", {{"controller", "pure-pursuit"}, {"track", "oval"}}},
+                    Case{"stanley", {{"controller", "stanley"}, {"track", "oval"}}},
+                    Case{"learns_grip", {{"preset", "race"}, {"tracking_mpc.learn_grip", "true"}}}),
+    [](const auto& each) { return std::string(each.param.name); });
+
+TEST(Copy, KeepsFaultsThatAct) {
+  const auto run = noisy_loop({{"track", "oval"}});
+  drive(*run, 8.0);
+  run->set_fault("half_grip", true);
+  drive(*run, 0.4);
+  const auto copy = run->copy();
+  EXPECT_NE(copy->frame().active_faults, 0U);
+  expect_same(future_of(*copy, 5.0), future_of(*run, 5.0));
+}
+
+/// A lap that is wanted, and not there yet, comes at the same time.
+TEST(Copy, OfStepsGetsTheSamePlan) {
+  const auto run = noisy_loop({{"preset", "race"}, {"guard.road", "waypoints"}, {"track", "oval"}});
+  std::vector<double> changes;
+  const RunHooks hooks{.on_change = [&](const telemetry::Change& change) { changes.push_back(change.time); }};
+  RunSteps steps(*run, hooks);
+  double wanted = 0.0;
+  while (run->time() < wanted + 0.5 * LapPlanner::kPlanningTime || wanted == 0.0) {
+    steps.advance();
+    if (wanted == 0.0 && run->controller().wants_lap().is_wanted) wanted = run->time();
+  }
+  ASSERT_THAT(changes, IsEmpty());
+  const auto copy = run->copy();
+  RunSteps copied(*copy, steps);
+  const auto drive_to_plan = [&](RunSteps& each, std::size_t count) {
+    while (changes.size() < count && each.loop().time() < wanted + 60.0) each.advance();
+  };
+  drive_to_plan(steps, 1);
+  drive_to_plan(copied, 2);
+  ASSERT_EQ(changes.size(), 2U);
+  EXPECT_EQ(changes[0], changes[1]);
+}
+
+TEST(Copy, IsNoneOfAControllerThatCannotBeCopied) {
+  const auto loop =
+      test::good(ClosedLoop::create(test::scenario_of({{"track", "oval"}}), test::make_own_controller));
+  EXPECT_EQ((*loop)->copy(), nullptr);
+  EXPECT_EQ(controller::copy_of((*loop)->controller()), nullptr);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ scenario::Scenario scenario_of(const char* preset) {
 TEST(ControlCycle, DoesOutsideTheLoopWhatItDoesInside) {
   for (const char* preset : {"default", "weighted", "pid"}) {
     const scenario::Scenario scenario = scenario_of(preset);
-    const auto loop = std::move(*ClosedLoop::create(scenario));
+    const auto loop = test::loop_of(scenario);
     ControlCycle alone(std::move(*make_controller(scenario)), scenario, &loop->track());
     const auto frame = std::make_unique<telemetry::Frame>();
     while (loop->time() < 20.0) {
@@ -71,7 +71,7 @@ TEST(ControlCycle, KeepsAPlanOfAnySizeWithinItsCapacity) {
 
 TEST(ControlCycle, StopsWhenNothingIsMeasured) {
   const scenario::Scenario scenario = scenario_of("default");
-  const auto loop = std::move(*ClosedLoop::create(scenario));
+  const auto loop = test::loop_of(scenario);
   ControlCycle cycle(std::move(*make_controller(scenario)), scenario, &loop->track());
   const auto frame = std::make_unique<telemetry::Frame>();
   while (loop->time() < 20.0) {

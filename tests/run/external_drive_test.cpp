@@ -2,6 +2,7 @@
 #include "chicane/run/external_drive.hpp"
 
 #include "chicane/run/make.hpp"
+#include "chicane/run/simulated_car.hpp"
 #include "support/chicane_test.hpp"
 
 namespace chicane::run {
@@ -26,6 +27,11 @@ class ExternalDriveTest : public testing::Test {
     return {.received = at, .measured = measured, .delay = 0.1, .usual_delay = 0.1};
   }
 
+  static void step(ExternalDrive& drive, const ExternalDrive::Sighting& now) {
+    drive.step(now);
+    drive.finish();
+  }
+
   scenario::Scenario scenario_;
   ExternalDriveHooks hooks_;
   std::vector<telemetry::Frame> frames_;
@@ -35,9 +41,8 @@ TEST_F(ExternalDriveTest, AnswersWithAFiniteCommandAndHandsOnTheFrame) {
   ExternalDrive drive = make();
   const auto now = ExternalDrive::Clock::now();
   for (int i = 0; i < 5; ++i) {
-    drive.step(seen(now + i * milliseconds{40}, 0.2 * i));
+    step(drive, seen(now + i * milliseconds{40}, 0.2 * i));
     EXPECT_TRUE(std::isfinite(drive.frame().result.command.steer));
-    drive.finish();
   }
   ASSERT_EQ(frames_.size(), 5U);
   EXPECT_TRUE(frames_[0].begins);
@@ -48,10 +53,8 @@ TEST_F(ExternalDriveTest, AnswersWithAFiniteCommandAndHandsOnTheFrame) {
 TEST_F(ExternalDriveTest, ACycleWithoutAMeasurementIsOneInWhichNothingIsMeasured) {
   ExternalDrive drive = make();
   const auto now = ExternalDrive::Clock::now();
-  drive.step(seen(now, 0.0));
-  drive.finish();
-  drive.step({.received = now + milliseconds{40}, .delay = 0.1, .usual_delay = 0.1});
-  drive.finish();
+  step(drive, seen(now, 0.0));
+  step(drive, {.received = now + milliseconds{40}, .delay = 0.1, .usual_delay = 0.1});
   EXPECT_FALSE(frames_[1].has_measurement);
   EXPECT_TRUE(std::isnan(frames_[1].measurement.x));
   EXPECT_TRUE(std::isfinite(frames_[1].result.command.throttle));
@@ -60,10 +63,7 @@ TEST_F(ExternalDriveTest, ACycleWithoutAMeasurementIsOneInWhichNothingIsMeasured
 TEST_F(ExternalDriveTest, TrustsNothingLearnedAfterALongGap) {
   ExternalDrive drive = make();
   const auto now = ExternalDrive::Clock::now();
-  for (const int ms : {0, 40, 1240, 1280, 1320}) {
-    drive.step(seen(now + milliseconds{ms}, 0.005 * ms));
-    drive.finish();
-  }
+  for (const int ms : {0, 40, 1240, 1280, 1320}) step(drive, seen(now + milliseconds{ms}, 0.005 * ms));
   EXPECT_FALSE(frames_[1].begins);
   EXPECT_TRUE(frames_[2].begins);
   EXPECT_TRUE(frames_[3].begins);  // the first may have waited as long
@@ -101,13 +101,41 @@ TEST_F(ExternalDriveTest, CountsByTheClockOfASlowSimulatorAndSaysSoOnce) {
 TEST_F(ExternalDriveTest, ARunThatBeginsAnewTrustsNothingLearned) {
   ExternalDrive drive = make();
   const auto now = ExternalDrive::Clock::now();
-  drive.step(seen(now, 0.0));
-  drive.finish();
+  step(drive, seen(now, 0.0));
   drive.begin_anew();
-  drive.step(seen(now + milliseconds{40}, 70.0));
-  drive.finish();
+  step(drive, seen(now + milliseconds{40}, 70.0));
   EXPECT_TRUE(frames_[1].begins);
   EXPECT_NE(frames_[1].guard.reason, controller::GuardReason::kPositionJump);
+}
+
+model::Command ahead() { return {.steer = 0.0, .throttle = 0.5}; }
+
+TEST(SimulatedCar, LeavesTimeOutThatItCannotCatchUpWith) {
+  const auto car = SimulatedCar::create(scenario::Scenario{}, 0.0).value();
+  EXPECT_EQ(car->catch_up(0.2, ahead), 0.0);
+  EXPECT_NEAR(car->world.time(), 0.2, 0.021);
+  const double late = car->catch_up(2.0, ahead);
+  EXPECT_NEAR(late, 2.0 - 0.2 - SimulatedCar::kCatchUp, 0.021);
+  EXPECT_NEAR(car->world.time(), 2.0 - late, 0.021);
+}
+
+TEST(StopNews, SaysOnceThatTheCarIsStoppedThatItStandsAndThatItDrivesOn) {
+  const auto car = SimulatedCar::create(scenario::Scenario{}, 0.0).value();
+  std::vector<std::string> said;
+  StopNews news(scenario::Scenario{}, [&](std::string_view line) { said.emplace_back(line); });
+  const auto why = [] { return std::string("nobody is there"); };
+  EXPECT_FALSE(news.look(*car, true, 0.0, why)) << "it stood already";
+  EXPECT_FALSE(news.look(*car, false, 0.0, why));
+  static_cast<void>(car->catch_up(0.3, ahead));
+  EXPECT_TRUE(news.look(*car, true, 9.0, why));
+  EXPECT_FALSE(news.look(*car, true, 9.0, why));
+  car->plant->reset({}, 0.0);
+  EXPECT_FALSE(news.look(*car, true, 0.2, why));
+  EXPECT_FALSE(news.look(*car, true, 0.0, why));
+  EXPECT_FALSE(news.look(*car, false, 0.0, why));
+  EXPECT_THAT(
+      said, ElementsAre("no command in time: the car is stopped from 9.0 m/s: nobody is there",
+                        HasSubstr("m inside the road's edge: nobody is there"), HasSubstr("drives on from")));
 }
 
 }  // namespace

@@ -56,23 +56,19 @@ TEST(LaneChange, IsNotPassedByWhoDrivesStraightOn) {
 }
 
 TEST(LaneChange, IsNoneForModelCars) {
-  const auto change = LaneChange::create(scenario_of("f1tenth", "race").vehicle);
-  ASSERT_FALSE(change.has_value());
-  EXPECT_EQ(change.error().message, "lane change: got a model car, expected one in full size");
+  EXPECT_EQ(test::refusal_of(LaneChange::create(scenario_of("f1tenth", "race").vehicle)),
+            "lane change: got a model car, expected one in full size");
 }
 
 // Lengths and widths of a car of 1.8 m: 12, 13.5, 11, 12.5 and 12 m; 1.1 b + 0.25, b + 1 and 3 m.
 TEST(LaneChangeCourse, HasTheSectionsOfTheStandard) {
   const auto lanes = LaneChangeCourse(1.8).lanes();
-  EXPECT_EQ(lanes[0].begin, 0.0);
-  EXPECT_EQ(lanes[0].end, 12.0);
-  EXPECT_EQ(lanes[1].begin, 25.5);
-  EXPECT_EQ(lanes[1].end, 36.5);
-  EXPECT_EQ(lanes[2].begin, 49.0);
-  EXPECT_EQ(lanes[2].end, 61.0);
-  EXPECT_NEAR(lanes[0].left - lanes[0].right, 2.23, 1e-12);
-  EXPECT_NEAR(lanes[1].left - lanes[1].right, 2.8, 1e-12);
-  EXPECT_NEAR(lanes[2].left - lanes[2].right, 3.0, 1e-12);
+  const double expected[3][3] = {{0.0, 12.0, 2.23}, {25.5, 36.5, 2.8}, {49.0, 61.0, 3.0}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(lanes[i].begin, expected[i][0]);
+    EXPECT_EQ(lanes[i].end, expected[i][1]);
+    EXPECT_NEAR(lanes[i].left - lanes[i].right, expected[i][2], 1e-12);
+  }
   EXPECT_NEAR(lanes[1].right - lanes[0].left, 1.0, 1e-12);
   const auto wide = LaneChangeCourse(2.43).lanes();
   EXPECT_NEAR(wide[2].left - wide[2].right, 1.3 * 2.43 + 0.25, 1e-12);

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/parallel.hpp"
+#include "chicane/run/worker.hpp"
+#include "chicane/telemetry/metrics.hpp"
 #include "support/chicane_test.hpp"
 
 #include <atomic>
+#include <future>
+#include <thread>
 
 namespace chicane::run {
 namespace {
@@ -85,6 +89,88 @@ TEST(Shard, RefusesArraysWithHolesAndNumbersThatMakeNoSense) {
   EXPECT_FALSE(shard_in(array("7", "", "1", "7", "1")));
   EXPECT_FALSE(shard_in({{"OMPI_COMM_WORLD_RANK", "4"}, {"OMPI_COMM_WORLD_SIZE", "4"}}));
   EXPECT_FALSE(shard_in({{"PMI_RANK", "x"}, {"PMI_SIZE", "4"}}));
+}
+
+using ChangeQueue = ThreadQueue<telemetry::Change>;
+
+telemetry::Change change(std::uint64_t number) {
+  return {.cycle = number, .name = "run.pace", .value = std::to_string(number)};
+}
+
+TEST(ThreadQueue, GivesChangesInTheirOrder) {
+  const auto queue = std::make_unique<ChangeQueue>();
+  EXPECT_EQ(queue->front(), nullptr);
+  EXPECT_TRUE(queue->push(change(1)));
+  EXPECT_TRUE(queue->push(change(2)));
+  ASSERT_NE(queue->front(), nullptr);
+  EXPECT_EQ(queue->front()->value.view(), "1");
+  queue->pop();
+  EXPECT_EQ(queue->front()->value.view(), "2");
+  queue->pop();
+  EXPECT_EQ(queue->front(), nullptr);
+}
+
+TEST(ThreadQueue, RefusesWhatDoesNotFitAndKeepsTheRest) {
+  const auto queue = std::make_unique<ChangeQueue>();
+  for (std::uint64_t i = 0; i < ChangeQueue::kCapacity; ++i) {
+    EXPECT_EQ(queue->room(), ChangeQueue::kCapacity - i);
+    EXPECT_TRUE(queue->push(change(i)));
+  }
+  EXPECT_FALSE(queue->push(change(999)));
+  EXPECT_EQ(queue->front()->cycle, 0u);
+  queue->pop();
+  EXPECT_EQ(queue->room(), 1u);
+  EXPECT_TRUE(queue->push(change(1000)));
+}
+
+TEST(ThreadQueue, LosesNothingBetweenTwoThreads) {
+  constexpr std::uint64_t kCount = 5000;
+  const auto queue = std::make_unique<ChangeQueue>();
+  std::thread sender{[&] {
+    for (std::uint64_t i = 0; i < kCount;) i += queue->push(change(i)) ? 1 : 0;
+  }};
+  for (std::uint64_t i = 0; i < kCount;) {
+    const telemetry::Change* next = queue->front();
+    if (next == nullptr) continue;
+    EXPECT_EQ(next->cycle, i);
+    EXPECT_EQ(next->value.view(), std::to_string(i));
+    queue->pop();
+    ++i;
+  }
+  sender.join();
+}
+
+using namespace std::chrono_literals;
+
+TEST(Worker, WorksOnceForEachWakeAndNotBefore) {
+  std::atomic<int> works{0};
+  std::promise<void> began, may_end;
+  const std::shared_future<void> end = may_end.get_future().share();
+  {
+    Worker worker([&] {
+      if (++works == 1) began.set_value();
+      end.wait();
+    });
+    EXPECT_EQ(works, 0);
+    worker.wake();
+    began.get_future().wait();
+    worker.wake();  // two during a work lead to one more
+    worker.wake();
+    may_end.set_value();
+    while (works < 2) std::this_thread::yield();
+  }
+  EXPECT_EQ(works, 2);
+}
+
+TEST(Worker, WorksEachPeriodUntilItIsDestroyed) {
+  std::atomic<int> works{0};
+  {
+    const Worker worker([&] { ++works; }, 1ms);
+    while (works < 3) std::this_thread::yield();
+  }
+  const int at_end = works;
+  std::this_thread::sleep_for(5ms);
+  EXPECT_EQ(works, at_end);
 }
 
 }  // namespace

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/roads.hpp"
 
-#include <random>
-
-#include "chicane/base/math.hpp"
+#include "chicane/base/random.hpp"
 #include "chicane/run/make.hpp"
 #include "support/chicane_test.hpp"
 #include "support/roads.hpp"
@@ -25,11 +23,9 @@ TEST(Roads, AreMadeOnceForEachTrackGuardAndCar) {
   EXPECT_NE(roads.of(scenario_of("oval", "off")).value(), first);
   EXPECT_NE(roads.of(scenario_of("oval", "on", "road-car")).value(), first);
   EXPECT_EQ(roads.of(scenario_of("hairpins", "on")).value()->track.name(), "hairpins");
-  EXPECT_FALSE(roads.of([] {
-    scenario::Scenario lost = scenario_of("oval", "on");
-    lost.track = "nowhere";
-    return lost;
-  }()));
+  scenario::Scenario lost = scenario_of("oval", "on");
+  lost.track = "nowhere";
+  EXPECT_FALSE(roads.of(lost));
 }
 
 TEST(Roads, ChangeNothingInARun) {
@@ -54,17 +50,11 @@ TEST(Roads, RememberOnlyForWhichCarThereIsRoom) {
 
 // The way along noisy points is longer than the road.
 TEST(MakeWaypoints, ThinsDenseNoisyPointsEvenlyAllRound) {
-  std::mt19937 random{1};
-  std::normal_distribution<double> noise{0.0, 0.1};
+  Random random{1};
   for (const double spacing : {0.25, 1.0, 4.0}) {
-    std::vector<road::TrackPoint> points;
-    const int count = static_cast<int>(kTwoPi * 100.0 / spacing);
-    for (int i = 0; i < count; ++i) {
-      const double angle = kTwoPi * i / count;
-      const double radius = 100.0 + noise(random);
-      points.push_back({{radius * std::cos(angle), radius * std::sin(angle)}, 4.0, 4.0});
-    }
-    const road::Track track = road::Track::create("dense", points, true).value();
+    const auto points = test::points_round(static_cast<int>(kTwoPi * 100.0 / spacing),
+                                           [&](double) { return 100.0 + 0.1 * random.normal(); });
+    const road::Track track = road::Track::create("dense", test::with_widths(points, 4.0, 4.0), true).value();
     const std::vector<road::TrackPoint> thinned = make_waypoints(track).value().raw_points();
     for (std::size_t i = 0; i < thinned.size(); ++i) {
       const double gap = (thinned[(i + 1) % thinned.size()].position - thinned[i].position).norm();
@@ -86,15 +76,10 @@ model::Measurement shown(double radius, double moved = 0.0) {
   return measurement;
 }
 
-TEST(TrackFit, TakesWaypointsOnTheRoadAndCloseToIt) {
+TEST(TrackFit, SaysHowFarAnotherRoadIsAndNothingOfPlacesCloseToIt) {
   const road::Track track = round_road();
-  EXPECT_FALSE(distance_to_other_road(track, shown(60.0)));
-  EXPECT_FALSE(distance_to_other_road(track, shown(63.0)));
-  EXPECT_FALSE(distance_to_other_road(track, shown(60.0 + 4.0 + kBesideRoad - 0.5)));
-}
-
-TEST(TrackFit, SaysHowFarAnotherRoadIs) {
-  const road::Track track = round_road();
+  for (const double radius : {60.0, 63.0, 60.0 + 4.0 + kBesideRoad - 0.5})
+    EXPECT_FALSE(distance_to_other_road(track, shown(radius))) << radius;
   const auto distance = test::good(distance_to_other_road(track, shown(60.0, 63.0)));
   EXPECT_NEAR(*distance, 63.0, 0.5);  // the first waypoint is the farthest
   EXPECT_TRUE(distance_to_other_road(track, shown(60.0 - 4.0 - kBesideRoad - 0.5)));

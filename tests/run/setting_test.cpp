@@ -13,17 +13,12 @@ Result<Setting> read(std::string_view name, std::string_view value) {
 
 template <class Kind>
 Kind action(std::string_view name, std::string_view value) {
-  const Result<Setting> setting = read(name, value);
-  EXPECT_TRUE(setting) << name << " " << value;
-  const Kind* found = setting ? std::get_if<Kind>(&setting->action) : nullptr;
-  EXPECT_NE(found, nullptr) << name << " " << value;
-  return found != nullptr ? *found : Kind{};
+  SCOPED_TRACE(std::string(name) + " " + std::string(value));
+  return std::get<Kind>(test::good(read(name, value))->action);
 }
 
 std::string refusal(std::string_view name, std::string_view value) {
-  const Result<Setting> setting = read(name, value);
-  EXPECT_FALSE(setting) << name << " " << value;
-  return setting ? "" : setting.error().message;
+  return test::refusal_of(read(name, value));
 }
 
 TEST(Setting, OfEachFieldThatIsNoTextReadsAsSetTakesIt) {
@@ -42,17 +37,6 @@ TEST(Setting, OfEachFieldThatIsNoTextReadsAsSetTakesIt) {
     EXPECT_EQ(protocol::get_text(written, row), text);
     EXPECT_EQ(setting->change.name.view(), row.key);
     EXPECT_EQ(setting->change.cycle, 7U);
-  }
-}
-
-TEST(Setting, WritesItsFieldAndNoOther) {
-  const Result<Setting> setting = test::good(read("latency_ms", "33.3"));
-  scenario::Scenario written;
-  write(written, std::get<FieldValue>(setting->action));
-  for (const protocol::Parameter& row : protocol::list()) {
-    EXPECT_EQ(protocol::get_text(written, row),
-              row.key == "latency_ms" ? "33.3" : protocol::get_text(scenario::Scenario{}, row))
-        << row.key;
   }
 }
 
@@ -100,12 +84,7 @@ TEST(Setting, IsRefusedInOneSentence) {
 
 using What = ManualSetting::What;
 
-model::Measurement at(double time, double speed) {
-  model::Measurement now;
-  now.time = time;
-  now.speed = speed;
-  return now;
-}
+model::Measurement at(double time, double speed) { return {.time = time, .speed = speed}; }
 
 TEST(ManualDrive, IsOffUntilItIsSwitchedOn) {
   ManualDrive drive;

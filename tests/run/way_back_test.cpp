@@ -4,12 +4,11 @@
 #include "chicane/run/parallel.hpp"
 #include "support/chicane_test.hpp"
 #include "support/runs.hpp"
-#include "support/slow_tests.hpp"
 
 namespace chicane::run {
 namespace {
 
-scenario::Scenario scenario_of(const std::string& track, const std::string& car) {
+scenario::Scenario scenario_on(const std::string& track, const std::string& car) {
   return test::scenario_of({{"track", track}, {"car", car}});
 }
 
@@ -25,7 +24,7 @@ std::vector<WayBackOutcome> drive_all_back(const scenario::Scenario& scenario,
 }
 
 TEST(WayBack, StartsAreAllKindsWithinReachOfTheRoadAndTheSameForTheSameSeed) {
-  const road::Track track = make_track(scenario_of("oval", "udacity")).value();
+  const road::Track track = make_track(scenario_on("oval", "udacity")).value();
   const auto starts = start_poses(track, 200, 3);
   ASSERT_EQ(starts.size(), 200U);
   std::array<int, kStartKindNames.size()> kinds{};
@@ -47,7 +46,7 @@ TEST(WayBack, StartsAreAllKindsWithinReachOfTheRoadAndTheSameForTheSameSeed) {
 }
 
 TEST(WayBack, OutcomesDoNotDependOnTheNumberOfThreads) {
-  const scenario::Scenario scenario = scenario_of("oval", "road-car");
+  const scenario::Scenario scenario = scenario_on("oval", "road-car");
   const auto starts = start_poses(make_track(scenario).value(), 3, 1);
   const auto one = drive_all_back(scenario, starts, 1);
   const auto two = drive_all_back(scenario, starts, 2);
@@ -71,7 +70,7 @@ TEST(WayBack, IsFoundFromWhereItWasMissed) {
         Named{"oval", "udacity", 112},         // the same
         Named{"oval", "udacity", 35},          // rolls back fast: the brake is the reverse gear
         Named{"lakeside", "udacity", 120}}) {  // its place is where no car can have gone forward
-    const scenario::Scenario scenario = scenario_of(each.track, each.car);
+    const scenario::Scenario scenario = scenario_on(each.track, each.car);
     const auto starts = start_poses(make_track(scenario).value(), 120, 1);
     Roads roads;
     const auto outcome = test::good(drive_back(scenario, starts[each.start - 1], roads));
@@ -80,33 +79,14 @@ TEST(WayBack, IsFoundFromWhereItWasMissed) {
   }
 }
 
-TEST(WayBack, IsFoundFromAnywhere) {
-  constexpr std::size_t kStarts = kDrivesAll ? 20 : 5;
-  for (const char* track : {"lakeside", "oval"}) {
-    for (const char* car : {"udacity", "road-car"}) {
-      const scenario::Scenario scenario = scenario_of(track, car);
-      const auto starts = start_poses(make_track(scenario).value(), kStarts, 2);  // each kind in turn
-      const auto outcomes = drive_all_back(scenario, starts, 2);
-      for (std::size_t i = 0; i < outcomes.size(); ++i) {
-        EXPECT_TRUE(outcomes[i].has_come_back())
-            << "chicane recover --starts " << kStarts << " --seed 2 --tracks " << track << " --cars " << car
-            << " --only " << i + 1;
-      }
-    }
-  }
-}
-
 /// The dashboard, the terminal and the recording show what the frame says.
 TEST(WayBack, FrameSaysThatTheRoadIsTooFarAwayAndHowFar) {
   for (const char* preset : {"default", "weighted", "waypoints"}) {  // weighted answers from there
     const bool is_shown = std::string_view(preset) == "waypoints";
     auto scenario =
-        protocol::compose(
-            {.scenario_file = {}, .settings = {{"track", "oval"}, {"preset", is_shown ? "default" : preset}}})
-            .value();
-    scenario.laps = 0;
+        test::scenario_of({{"track", "oval"}, {"preset", is_shown ? "default" : preset}, {"laps", "0"}});
     if (is_shown) scenario.guard.road = safety::GuardRoad::kWaypoints;
-    const auto loop = std::move(*ClosedLoop::create(scenario));
+    const auto loop = test::loop_of(scenario);
     const road::PathPoint at = loop->track().centre().at(0.0);
     // Outside of the lap, whichever side that is.
     const double side =

@@ -87,17 +87,22 @@ TEST(RoadCar, BrakingInATurnTakesGripFromCornering) {
   EXPECT_LT(most_braking, 0.9 * most_turning);
 }
 
+/// Both have the same numbers, but for `except`.
+void expect_alike(const model::VehicleParams& one, const model::VehicleParams& other, double tolerance,
+                  const std::set<std::string_view>& except = {}) {
+  for (const Option& option : model::vehicle_options()) {
+    if (option.kind != OptionKind::kNumber || except.contains(option.name)) continue;
+    const double a = std::get<double>(option.read(&one));
+    const double b = std::get<double>(option.read(&other));
+    if (a == b) continue;  // infinite
+    EXPECT_NEAR(a, b, tolerance * std::fabs(a)) << option.name;
+  }
+}
+
 // The values that were fitted to it (model/vehicle.cpp) are those that follow from what it is built of.
 TEST(DoubleTrack, TheModelThatFollowsFromTheRoadCarIsTheOneThatWasFitted) {
   const model::VehicleParams fitted = model::road_car_params();
-  const model::VehicleParams followed = model_of({}, fitted);
-  for (const Option& option : model::vehicle_options()) {
-    if (option.kind != OptionKind::kNumber) continue;
-    const double a = std::get<double>(option.read(&fitted));
-    const double b = std::get<double>(option.read(&followed));
-    if (a == b) continue;                                    // infinite
-    EXPECT_NEAR(a, b, 0.015 * std::fabs(a)) << option.name;  // of the drive: what slip takes at full throttle
-  }
+  expect_alike(fitted, model_of({}, fitted), 0.015);  // of the drive: what slip takes at full throttle
 }
 
 TEST(DoubleTrack, ThePlantOfAModelHasThatModel) {
@@ -118,16 +123,7 @@ TEST(DoubleTrack, ThePlantOfAModelHasThatModel) {
   found.drag_driven *= 0.9;
   found.drag_quadratic *= 1.5;
   const DoubleTrackParams made = plant_of(found, plant);
-  const model::VehicleParams model = model_of(made, found);
-  for (const Option& option : model::vehicle_options()) {
-    if (option.kind != OptionKind::kNumber || option.name == "kinematic_length" ||
-        option.name == "brake_throttle_limit")
-      continue;
-    const double a = std::get<double>(option.read(&found));
-    const double b = std::get<double>(option.read(&model));
-    if (a == b) continue;  // infinite
-    EXPECT_NEAR(a, b, 1e-12 * std::fabs(a)) << option.name;
-  }
+  expect_alike(found, model_of(made, found), 1e-12, {"kinematic_length", "brake_throttle_limit"});
   EXPECT_EQ(made.wheel_inertia, plant.wheel_inertia);
   EXPECT_NEAR(found.load_balance, 0.4 - plant.rear_axle / plant.wheelbase(), 1e-12);
 }
@@ -161,21 +157,6 @@ TEST(DoubleTrack, SlipsMoreWithItsInnerWheels) {
       }
     }
   }
-}
-
-TEST(DoubleTrack, ShowsNothingOfTheLastDriveAfterAReset) {
-  DoubleTrack car;
-  car.reset({}, 20.0);
-  for (int i = 0; i < 500; ++i) car.advance({.steer = 0.1, .throttle = 0.5});
-  car.reset({}, 7.0);
-  const PlantOutput& seen = car.output();
-  EXPECT_EQ(seen.speed, 7.0);
-  EXPECT_EQ(seen.ax, 0.0);
-  EXPECT_EQ(seen.ay, 0.0);
-  EXPECT_EQ(seen.throttle, 0.0);
-  EXPECT_EQ(seen.slip_angle, (std::array<double, 4>{}));
-  EXPECT_EQ(seen.slip_ratio, (std::array<double, 4>{}));
-  EXPECT_EQ(seen.tire_use, (std::array<double, 2>{}));
 }
 
 TEST(DoubleTrack, TractionControlKeepsTheDrivenWheelsFromSpinning) {

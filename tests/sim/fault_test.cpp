@@ -23,11 +23,14 @@ model::Measurement measurement(double time = 0.0) {
 
 Fault fault(std::string_view name) { return fault_named(name).value(); }
 
-FaultLab lab_with(std::string_view name, double strength) {
-  const FaultEvent event{fault(name), 0.0, 10.0, strength};
-  FaultLab lab({&event, 1}, 7);
+/// In which these faults are on.
+FaultLab lab_of(const std::vector<FaultEvent>& events) {
+  FaultLab lab(events, 7);
   lab.update(0.0);
   return lab;
+}
+FaultLab lab_with(std::string_view name, double strength) {
+  return lab_of({{fault(name), 0.0, 10.0, strength}});
 }
 FaultLab lab_with(std::string_view name) { return lab_with(name, kind_of(fault(name)).strength); }
 
@@ -157,28 +160,20 @@ TEST(FaultLab, SpoilsCommandsOnTheirWayAndAtTheActuators) {
 }
 
 TEST(FaultLab, LosesWhatASensorThatStandsStillWouldSay) {
-  const std::vector<FaultEvent> both{default_event(fault("link_lost"), 0.0),
-                                     default_event(fault("frozen_sensor"), 0.0)};
-  FaultLab lab(both, 7);
-  lab.update(0.0);
+  FaultLab lab = lab_of({default_event(fault("link_lost"), 0.0), default_event(fault("frozen_sensor"), 0.0)});
   EXPECT_TRUE(std::isnan(lab.seen(measurement()).x));
 }
 
 TEST(FaultLab, BrakesWeaklyWithAStuckPedal) {
-  const std::vector<FaultEvent> both{{fault("weak_brakes"), 0.0, 9.0, 0.5},
-                                     {fault("throttle_stuck"), 0.0, 9.0, 1.0}};
-  FaultLab lab(both, 7);
-  lab.update(0.0);
+  FaultLab lab = lab_of({{fault("weak_brakes"), 0.0, 9.0, 0.5}, {fault("throttle_stuck"), 0.0, 9.0, 1.0}});
   EXPECT_EQ(lab.done({0.0, -0.8}).throttle, -0.4);
   EXPECT_EQ(lab.done({0.0, 0.3}).throttle, -0.4);
 }
 
 TEST(FaultLab, OneFaultsChanceDoesNotShiftAnothers) {
   FaultLab alone = lab_with("gps_noise");
-  const std::vector<FaultEvent> both{default_event(fault("gps_noise"), 0.0),
-                                     default_event(fault("command_dropped"), 0.0)};
-  FaultLab together(both, 7);
-  together.update(0.0);
+  FaultLab together =
+      lab_of({default_event(fault("gps_noise"), 0.0), default_event(fault("command_dropped"), 0.0)});
   for (int i = 0; i < 20; ++i) {
     static_cast<void>(together.is_delivered());
     EXPECT_EQ(alone.seen(measurement()).x, together.seen(measurement()).x);

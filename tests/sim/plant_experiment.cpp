@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "sim/plant_experiment.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -97,21 +98,15 @@ Mismatch compare_with(const Log& log, const model::VehicleParams& params) {
 }  // namespace
 
 Line fit_line(const std::vector<std::pair<double, double>>& points) {
-  double n = 0.0, sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
-  for (const auto& [x, y] : points) {
-    n += 1.0;
-    sx += x;
-    sy += y;
-    sxx += x * x;
-    sxy += x * y;
+  const auto n = static_cast<Eigen::Index>(points.size());
+  Eigen::MatrixX2d a(n, 2);
+  Eigen::VectorXd b(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    a.row(i) << 1.0, points[static_cast<std::size_t>(i)].first;
+    b(i) = points[static_cast<std::size_t>(i)].second;
   }
-  Line line;
-  line.slope = (n * sxy - sx * sy) / (n * sxx - sx * sx);
-  line.offset = (sy - line.slope * sx) / n;
-  double squares = 0.0;
-  for (const auto& [x, y] : points) squares += std::pow(y - line.offset - line.slope * x, 2);
-  line.rms = std::sqrt(squares / n);
-  return line;
+  const Eigen::Vector2d line = a.householderQr().solve(b);
+  return {line(0), line(1), (a * line - b).norm() / std::sqrt(static_cast<double>(n))};
 }
 
 std::vector<Sample> drive_straight(Plant& plant, double throttle, double duration) {
@@ -196,17 +191,12 @@ std::pair<std::complex<double>, std::complex<double>> yaw_modes(Plant& plant, do
     if (i % stride == 0) w.push_back(plant.state().vy);
     plant.advance({.steer = 0.0, .throttle = hold.throttle(plant)});
   }
-  double a11 = 0.0, a12 = 0.0, a22 = 0.0, b1 = 0.0, b2 = 0.0;
-  for (std::size_t k = 0; k + 2 < w.size(); ++k) {
-    a11 += w[k + 1] * w[k + 1];
-    a12 += w[k + 1] * w[k];
-    a22 += w[k] * w[k];
-    b1 += w[k + 1] * w[k + 2];
-    b2 += w[k] * w[k + 2];
-  }
-  const double det = a11 * a22 - a12 * a12;
-  const double p = (b1 * a22 - b2 * a12) / det;
-  const double q = (a11 * b2 - a12 * b1) / det;
+  const auto n = static_cast<Eigen::Index>(w.size()) - 2;
+  const Eigen::Map<const Eigen::VectorXd> all(w.data(), n + 2);
+  Eigen::MatrixX2d before(n, 2);
+  before << all.segment(1, n), all.head(n);
+  const Eigen::Vector2d found = before.householderQr().solve(all.tail(n));
+  const double p = found(0), q = found(1);
   const std::complex<double> root = std::sqrt(std::complex<double>(p * p / 4.0 + q, 0.0));
   const double dt = stride * plant.step_length();
   return {std::log(p / 2.0 + root) / dt, std::log(p / 2.0 - root) / dt};

@@ -161,6 +161,11 @@ TEST_P(EveryPlant, ResetForgetsEverything) {
   for (int i = 0; i < 1000; ++i) used->advance({.steer = 0.1, .throttle = 1.0});
   used->reset({}, 5.0);
   fresh->reset({}, 5.0);
+  const PlantOutput &seen = used->output(), &expected = fresh->output();
+  EXPECT_EQ(std::tie(seen.speed, seen.ax, seen.ay, seen.throttle),
+            std::tie(expected.speed, expected.ax, expected.ay, expected.throttle));
+  EXPECT_EQ(std::tie(seen.slip_angle, seen.slip_ratio, seen.tire_use),
+            std::tie(expected.slip_angle, expected.slip_ratio, expected.tire_use));
   for (int i = 0; i < 1000; ++i) {
     used->advance({.steer = 0.02, .throttle = 0.3});
     fresh->advance({.steer = 0.02, .throttle = 0.3});

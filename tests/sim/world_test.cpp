@@ -58,8 +58,9 @@ model::Pose on_circle(double angle, double left = 0.0) {
   return {.x = r * std::cos(angle), .y = r * std::sin(angle), .psi = angle + kPi / 2.0};
 }
 
+/// A drive on the circle.
 struct Drive {
-  explicit Drive(const road::Track& on, double step_length = 0.02) : puppet{step_length}, world{puppet, on} {}
+  explicit Drive(double step_length = 0.02, double kerb = 0.0) : track{circle(kerb)}, puppet{step_length} {}
   void to(double angle, double left = 0.0) {
     puppet.go(on_circle(angle, left));
     world.advance({});
@@ -69,13 +70,13 @@ struct Drive {
     for (int i = 1; i <= steps; ++i) to(from + (until - from) * i / steps, left);
   }
   const WorldState& state() const { return world.state(); }
+  road::Track track;
   Puppet puppet;
-  World world;
+  World world{puppet, track};
 };
 
 TEST(World, KnowsWhereTheCarIs) {
-  const road::Track track = circle();
-  Drive drive{track};
+  Drive drive;
   drive.sweep(0.0, 1.0, 50, 1.5);
   // The spline through 120 points of a circle errs by 1e-5 of the radius at most; s by 1e-3 relative as Path
   // says.
@@ -88,9 +89,8 @@ TEST(World, KnowsWhereTheCarIs) {
 
 /// A plant with steps of 1 ms is judged every five of them.
 TEST(World, TimesLapsAndTheirSectorsToAFractionOfAStep) {
-  const road::Track track = circle();
   for (const double step : {0.02, 0.001}) {
-    Drive drive{track, step};
+    Drive drive{step};
     // 0.4 rad/s: a lap takes 2π / 0.4 = 15.70796 s, not a multiple of 0.02 s.
     for (int i = 1; i * step < 40.0 + 1e-9; ++i) drive.to(0.4 * step * i);
     const double lap_time = kTwoPi / 0.4;
@@ -110,8 +110,7 @@ TEST(World, TimesLapsAndTheirSectorsToAFractionOfAStep) {
 }
 
 TEST(World, CountsALapOnceWhenTheLineIsCrossedBackAndForth) {
-  const road::Track track = circle();
-  Drive drive{track};
+  Drive drive;
   drive.sweep(0.0, kTwoPi + 0.02, 400);
   EXPECT_EQ(drive.state().lap, 1);
   for (int i = 0; i < 5; ++i) {
@@ -124,16 +123,14 @@ TEST(World, CountsALapOnceWhenTheLineIsCrossedBackAndForth) {
 }
 
 TEST(World, DoesNotCountALapDrivenBackwards) {
-  const road::Track track = circle();
-  Drive drive{track};
+  Drive drive;
   drive.sweep(0.0, -1.5 * kTwoPi, 600);
   EXPECT_EQ(drive.state().lap, 0);
   EXPECT_LT(drive.state().progress, -1.4 * kTwoPi * kRadius);
 }
 
 TEST(World, VoidsARoundThatCutsAcross) {
-  const road::Track track = circle();
-  Drive drive{track};
+  Drive drive;
   drive.sweep(0.0, 1.0, 60);
   // Straight across the infield, from one side of the circle to the other.
   const model::Pose a = on_circle(1.0);
@@ -152,8 +149,7 @@ TEST(World, VoidsARoundThatCutsAcross) {
 }
 
 TEST(World, FirstDrivesToTheLineWhenItStartsElsewhere) {
-  const road::Track track = circle();
-  Drive drive{track};
+  Drive drive;
   drive.world.reset(on_circle(1.0), 0.0);
   EXPECT_FALSE(drive.state().is_timed);
   drive.sweep(1.0, kTwoPi + 0.01, 300);
@@ -164,8 +160,7 @@ TEST(World, FirstDrivesToTheLineWhenItStartsElsewhere) {
 }
 
 TEST(World, MeasuresTheEdgeFromTheOutermostPatch) {
-  const road::Track track = circle();
-  Drive drive{track};
+  Drive drive;
   drive.sweep(0.0, 0.5, 20);
   // The right rear and front patches lie 1 m right and 1.5 m along: √((60 + 1)² + 1.5²) − 60 = 1.01844 m off
   // the line.
@@ -177,8 +172,7 @@ TEST(World, MeasuresTheEdgeFromTheOutermostPatch) {
 }
 
 TEST(World, CountsAnOffTrackEventOnceUntilTheCarIsBackForAWhile) {
-  const road::Track track = circle();
-  Drive drive{track};
+  Drive drive;
   drive.sweep(0.0, 0.2, 10, 0.0);
   drive.sweep(0.2, 0.4, 10, 4.2);  // left patches 0.2 m beyond the edge
   EXPECT_TRUE(drive.state().is_off_track);
@@ -197,33 +191,25 @@ TEST(World, CountsAnOffTrackEventOnceUntilTheCarIsBackForAWhile) {
 }
 
 TEST(World, KerbIsDrivable) {
-  const road::Track track = circle(0.5);
-  Drive drive{track};
+  Drive drive{0.02, 0.5};
   drive.sweep(0.0, 0.4, 20, 4.2);
   EXPECT_FALSE(drive.state().is_off_track);
   drive.sweep(0.4, 0.6, 10, 4.6);
   EXPECT_TRUE(drive.state().is_off_track);
 }
 
-TEST(World, AnOpenTrackEndsWithOneLap) {
-  const road::Track track = straight();
-  Puppet puppet;
-  World world{puppet, track};
-  for (int i = 1; i <= 1100; ++i) {
-    puppet.go({.x = 0.3 * i, .y = 0.1, .psi = 0.0});
-    world.advance({});
-  }
-  EXPECT_TRUE(world.state().is_finished);
-  EXPECT_EQ(world.state().lap, 1);
-  EXPECT_NEAR(world.state().last_lap_time, 300.0 / 15.0, 1e-6);  // at 15 m/s
-}
-
 // From the start line to the finish, whatever lies before and behind; also for a car that comes up to the
 // start.
 TEST(World, TimesAnOpenRoadFromStartToFinish) {
-  const road::Track track =
+  const road::Track part =
       test::straight_road(30, 5.0, 4.0, {.smoothing_sigma = 0.0, .start_s = 40.0, .finish_s = 190.0});
-  for (const double from : {10.0, 40.0}) {
+  const road::Track whole = straight();
+  struct Row {
+    const road::Track& track;
+    double from, lap, end;
+  };
+  for (const auto& [track, from, lap, end] :
+       {Row{part, 10.0, 150.0, 190.0}, {part, 40.0, 150.0, 190.0}, {whole, 0.0, 300.0, 300.0}}) {
     Puppet puppet;
     World world{puppet, track};
     world.reset({.x = from, .y = 0.0, .psi = 0.0}, 0.0);
@@ -233,8 +219,8 @@ TEST(World, TimesAnOpenRoadFromStartToFinish) {
       world.advance({});
     }
     EXPECT_EQ(world.state().lap, 1) << from;
-    EXPECT_NEAR(world.state().last_lap_time, 150.0 / 15.0, 1e-6) << from;
-    EXPECT_NEAR(steps * 0.3, 190.0 - from, 0.6) << from;
+    EXPECT_NEAR(world.state().last_lap_time, lap / 15.0, 1e-6) << from;
+    EXPECT_NEAR(steps * 0.3, end - from, 0.6) << from;
   }
 }
 
@@ -276,12 +262,12 @@ TEST(SelectWaypoints, GoesAroundTheEndOfAClosedTrack) {
 }
 
 road::Track eight() {
-  std::vector<road::TrackPoint> points;
+  std::vector<Vec2> line;
   for (int i = 0; i < 60; ++i) {
     const double angle = kTwoPi * i / 60.0;
-    points.push_back({{100.0 * std::sin(angle), 60.0 * std::sin(2.0 * angle)}, 5.0, 5.0});
+    line.emplace_back(100.0 * std::sin(angle), 60.0 * std::sin(2.0 * angle));
   }
-  return road::Track::create("eight", points, true).value();
+  return road::Track::create("eight", test::with_widths(line, 5.0, 5.0), true).value();
 }
 
 // Also for a car beside the line and not quite along it, and where both passages have a waypoint.
@@ -339,19 +325,17 @@ TEST(SelectWaypoints, StopsAtTheEndOfAnOpenTrackAndKeepsItsBounds) {
 
 /// Another place on the road is no way off it, and the clock goes on.
 TEST(World, PutsTheCarElsewhereInTheSameRun) {
-  const road::Track track = circle();
-  Puppet puppet;
-  World world(puppet, track);
-  puppet.go({.x = kRadius, .y = 0.0, .psi = 0.5 * kPi});
-  for (int i = 0; i < 50; ++i) world.advance({});
+  Drive drive;
+  World& world = drive.world;
+  for (int i = 0; i < 50; ++i) drive.to(0.0);
   const double before = world.time();
   const model::Pose opposite{.x = -kRadius, .y = 0.0, .psi = -0.5 * kPi};
   world.put(opposite);
-  puppet.go(opposite);
+  drive.puppet.go(opposite);
   EXPECT_EQ(world.time(), before);
   for (int i = 0; i < 50; ++i) world.advance({});
   EXPECT_NEAR(world.time(), 2.0 * before, 1e-9);
-  EXPECT_NEAR(world.state().s, 0.5 * track.centre().length(), 0.1);
+  EXPECT_NEAR(world.state().s, 0.5 * drive.track.centre().length(), 0.1);
   EXPECT_GT(world.state().min_edge_distance, 2.0);
   EXPECT_EQ(world.state().lap, 0);
 }

@@ -2,6 +2,7 @@
 #include "chicane/solver/detail/filter_method.hpp"
 
 #include "chicane/solver/ocp_solver.hpp"
+#include "families/chains.hpp"
 #include "families/machines.hpp"
 #include "families/measure_family.hpp"
 #include "families/pendulums.hpp"
@@ -47,6 +48,21 @@ TEST(FilterMethod, SwingsUpAPoleFromNoPush) {  // full steps and descents solve 
 TEST(FilterMethod, KeepsBoundsOnChangesOfInputs) {  // descents solve none of these
   for (const int seed : {9, 29, 44, 79}) expect_optimal<Reactor>(seed, NaiveStart::kIdle);
   for (const int seed : {1, 21, 33, 51}) expect_optimal<Reactor>(seed, NaiveStart::kLine);
+}
+
+/// More variables in a stage than are unrolled: 57 states, 3 inputs.
+TEST(LargeProblems, CalmAChainOfNineMasses) {
+  for (int seed = 0; seed < 4; ++seed) {
+    for (const NaiveStart start : {NaiveStart::kIdle, NaiveStart::kLine}) {
+      const auto [report, kkt] =
+          solve<LongChain>(seed, start, {.start_from_states = start == NaiveStart::kLine});
+      EXPECT_EQ(report.status, SolveStatus::kOptimal) << seed;
+      EXPECT_LE(kkt.stationarity, 1.1e-6) << seed;
+      EXPECT_LE(kkt.defect, 1e-12) << seed;
+      EXPECT_LE(kkt.outside, 0.0) << seed;
+      EXPECT_NEAR(kkt.cost, report.cost, 1e-9 * kkt.cost) << seed;
+    }
+  }
 }
 
 TEST(FilterMethod, SaysWhereRoundingEndsIt) {

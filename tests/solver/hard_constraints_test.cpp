@@ -60,16 +60,18 @@ constexpr int kStages = 20;
 using PushSolver = solver::OcpSolver<Push, kStages>;
 using PushPlan = PushSolver::Trajectory;
 
-HardReport solve(const Push& problem, PushPlan& plan, PushSolver& ocp) {
-  plan = {.horizon = kStages};
-  return ocp.solve(problem, {0.0, 0.0}, plan);
-}
+class HardConstraints : public testing::Test {
+ protected:
+  HardReport solve(const Push& problem) {
+    plan_ = {.horizon = kStages};
+    return ocp_->solve(problem, {0.0, 0.0}, plan_);
+  }
+  std::unique_ptr<PushSolver> ocp_ = std::make_unique<PushSolver>();
+  PushPlan plan_;
+};
 
-TEST(HardConstraints, ReachAGoalForTheLeastPush) {
-  const auto ocp = std::make_unique<PushSolver>();
-  PushPlan plan;
-  const Push problem;
-  const HardReport report = solve(problem, plan, *ocp);
+TEST_F(HardConstraints, ReachAGoalForTheLeastPush) {
+  const HardReport report = solve({});
   ASSERT_EQ(report.status, SolveStatus::kOptimal);
   // Least squares: u = Cᵀ (C Cᵀ)⁻¹ (1, 0), where C has what each push does to position and speed at the end.
   double pp = 0.0, ps = 0.0, ss = 0.0;
@@ -82,48 +84,42 @@ TEST(HardConstraints, ReachAGoalForTheLeastPush) {
   const double det = pp * ss - ps * ps;
   for (int k = 0; k < kStages; ++k) {
     const double u = position(k) * ss / det - Push::kStep * ps / det;
-    EXPECT_NEAR(plan.u[static_cast<std::size_t>(k)][0], u, 1e-5) << k;
+    EXPECT_NEAR(plan_.u[static_cast<std::size_t>(k)][0], u, 1e-5) << k;
   }
-  EXPECT_NEAR(plan.x[kStages][0], 1.0, 1e-6);
-  EXPECT_LE(plan.x[kStages][1], 1e-6);
+  EXPECT_NEAR(plan_.x[kStages][0], 1.0, 1e-6);
+  EXPECT_LE(plan_.x[kStages][1], 1e-6);
   EXPECT_NEAR(report.cost, 0.5 * ss / det, 1e-6 * report.cost + 1e-5);
 }
 
-TEST(HardConstraints, HaveMultipliersThatSayWhatARightHandSideCosts) {
-  const auto ocp = std::make_unique<PushSolver>();
-  PushPlan plan;
-  const double cost = solve({}, plan, *ocp).cost;
-  const double by_goal = ocp->terminal_equality_multiplier(0);
-  const double by_speed = ocp->terminal_constraint_multiplier(0);
+TEST_F(HardConstraints, HaveMultipliersThatSayWhatARightHandSideCosts) {
+  const double cost = solve({}).cost;
+  const double by_goal = ocp_->terminal_equality_multiplier(0);
+  const double by_speed = ocp_->terminal_constraint_multiplier(0);
   EXPECT_GT(by_speed, 0.0);
   constexpr double kChange = 1e-3;
-  const double further = solve({.goal = 1.0 + kChange}, plan, *ocp).cost;
-  const double faster = solve({.end_speed = kChange}, plan, *ocp).cost;
+  const double further = solve({.goal = 1.0 + kChange}).cost;
+  const double faster = solve({.end_speed = kChange}).cost;
   EXPECT_NEAR((further - cost) / kChange, -by_goal, 0.01 * std::fabs(by_goal));  // h = p − goal
   EXPECT_NEAR((faster - cost) / kChange, -by_speed, 0.01 * by_speed);
-  solve({.end_speed = 10.0}, plan, *ocp);  // out of reach: as if it were not there
-  EXPECT_EQ(ocp->terminal_constraint_multiplier(0), 0.0);
+  solve({.end_speed = 10.0});  // out of reach: as if it were not there
+  EXPECT_EQ(ocp_->terminal_constraint_multiplier(0), 0.0);
 }
 
-TEST(HardConstraints, KeepAHardLimitWhoseFirstPenaltyIsTooLow) {
-  const auto ocp = std::make_unique<PushSolver>();
-  PushPlan plan;
+TEST_F(HardConstraints, KeepAHardLimitWhoseFirstPenaltyIsTooLow) {
   for (const double penalty : {1e-4, 1.0, 1e4}) {
-    const HardReport report = solve({.fastest = 0.6, .first_penalty = penalty}, plan, *ocp);
+    const HardReport report = solve({.fastest = 0.6, .first_penalty = penalty});
     ASSERT_EQ(report.status, SolveStatus::kOptimal) << penalty;
     double fastest = 0.0;
-    for (int k = 0; k < kStages; ++k) fastest = std::max(fastest, plan.x[static_cast<std::size_t>(k)][1]);
+    for (int k = 0; k < kStages; ++k) fastest = std::max(fastest, plan_.x[static_cast<std::size_t>(k)][1]);
     EXPECT_NEAR(fastest, 0.6, 1e-4) << penalty;
     EXPECT_LE(fastest, 0.6 + 1e-6) << penalty;
   }
 }
 
-TEST(HardConstraints, SayWhatCannotHoldAndWhere) {
-  const auto ocp = std::make_unique<PushSolver>();
-  PushPlan plan;
+TEST_F(HardConstraints, SayWhatCannotHoldAndWhere) {
   for (const double most : {0.01, 0.1, 0.5}) {  // pushing all the time brings it not even half the way
     const Push problem{.most = most};
-    const HardReport report = solve(problem, plan, *ocp);
+    const HardReport report = solve(problem);
     EXPECT_EQ(report.status, SolveStatus::kInfeasible) << most;
     EXPECT_GT(report.miss, 0.05) << most;
     EXPECT_EQ(report.miss_stage, kStages) << most;
@@ -136,40 +132,37 @@ TEST(HardConstraints, SayWhatCannotHoldAndWhere) {
   }
 }
 
-TEST(HardConstraints, AreUsableOnlyWhereTheyHold) {
-  const auto ocp = std::make_unique<PushSolver>();
-  PushPlan plan;
+TEST_F(HardConstraints, AreUsableOnlyWhereTheyHold) {
   constexpr double kReach = 1.9;  // of pushing with 1 m/s² for all stages [m]
   for (const double beyond : {1e-4, 3e-4, 5e-4, 1e-3, 3e-3, 1e-2, 0.1, 1.0}) {
-    const HardReport report = solve({.goal = kReach + beyond, .end_speed = 10.0, .most = 1.0}, plan, *ocp);
+    const HardReport report = solve({.goal = kReach + beyond, .end_speed = 10.0, .most = 1.0});
     EXPECT_FALSE(solver::usable(report.status)) << beyond;
     EXPECT_GE(report.miss, 0.9 * beyond) << beyond;
   }
-  const HardReport report = solve({.goal = kReach - 1e-4, .end_speed = 10.0, .most = 1.0}, plan, *ocp);
+  const HardReport report = solve({.goal = kReach - 1e-4, .end_speed = 10.0, .most = 1.0});
   EXPECT_EQ(report.status, SolveStatus::kOptimal);
 }
 
-TEST(HardConstraints, GoOnFromMultipliersOfTheLastSolve) {
-  const auto ocp = std::make_unique<PushSolver>(solver::SolverOptions{.start_from_states = true});
-  PushPlan plan{.horizon = kStages};
+TEST_F(HardConstraints, GoOnFromMultipliersOfTheLastSolve) {
+  ocp_ = std::make_unique<PushSolver>(solver::SolverOptions{.start_from_states = true});
+  plan_ = {.horizon = kStages};
   PushSolver::Multipliers multipliers;
-  const HardReport first = ocp->solve({}, {0.0, 0.0}, plan, multipliers);
+  const HardReport first = ocp_->solve({}, {0.0, 0.0}, plan_, multipliers);
   ASSERT_EQ(first.status, SolveStatus::kOptimal);
-  const HardReport second = ocp->solve({}, {0.0, 0.0}, plan, multipliers);
+  const HardReport second = ocp_->solve({}, {0.0, 0.0}, plan_, multipliers);
   EXPECT_EQ(second.status, SolveStatus::kOptimal);
   EXPECT_EQ(second.rounds, 1);
   EXPECT_LT(second.iterations, first.iterations);
   EXPECT_NEAR(second.cost, first.cost, 5e-5);  // misses of 1e-6 at multipliers of 15
 }
 
-TEST(HardConstraints, NeedNoMemoryAndStopInTime) {
-  const auto ocp = std::make_unique<PushSolver>();
-  PushPlan plan{.horizon = kStages};
+TEST_F(HardConstraints, NeedNoMemoryAndStopInTime) {
+  plan_ = {.horizon = kStages};
   const test::AllocationGuard guard;
-  ocp->solve({.fastest = 0.6}, {0.0, 0.0}, plan);
+  ocp_->solve({.fastest = 0.6}, {0.0, 0.0}, plan_);
   EXPECT_EQ(guard.count(), 0);
-  ocp->allow_iterations(2);
-  const HardReport report = ocp->solve({.fastest = 0.6}, {0.0, 0.0}, plan);
+  ocp_->allow_iterations(2);
+  const HardReport report = ocp_->solve({.fastest = 0.6}, {0.0, 0.0}, plan_);
   EXPECT_FALSE(report.status == SolveStatus::kOptimal);
   EXPECT_LE(report.iterations, 3);
 }
@@ -203,7 +196,7 @@ struct Valve {
 };
 
 // Rows weighed alike, whatever their slopes, left nothing but rounding of other curvature.
-TEST(HardConstraints, MayHaveSlopesOfAnySize) {
+TEST_F(HardConstraints, MayHaveSlopesOfAnySize) {
   const auto ocp = std::make_unique<solver::OcpSolver<Valve, kStages>>();
   for (const double step : {0.01, 0.1, 1.0}) {
     for (double rate = 1e2; rate < 1e9; rate *= 10.0) {
@@ -236,12 +229,12 @@ void expect_optimal(std::initializer_list<int> seeds, NaiveStart start, solver::
   }
 }
 
-TEST(HardConstraints, SwingUpAPoleExactly) {
+TEST_F(HardConstraints, SwingUpAPoleExactly) {
   expect_optimal<HardCartPole>({0, 1, 2, 3, 4, 5}, NaiveStart::kIdle);
   expect_optimal<HardCartPole>({0, 1, 2, 3, 4, 5}, NaiveStart::kLine);
 }
 // Multipliers of rounds as loose as the tolerance led a third of these astray.
-TEST(HardConstraints, AreMetToALooseTolerance) {
+TEST_F(HardConstraints, AreMetToALooseTolerance) {
   const auto ocp = std::make_unique<solver::OcpSolver<CraneInLeastTime, CraneInLeastTime::kHorizon>>(
       solver::SolverOptions{.tolerance = 1e-4});
   for (int seed = 0; seed < 12; ++seed) {
@@ -253,15 +246,15 @@ TEST(HardConstraints, AreMetToALooseTolerance) {
   }
 }
 // An inequality at the end that was active in early rounds only kept its multiplier: no optimum.
-TEST(HardConstraints, LetGoOfInequalitiesThatHoldWithRoomToSpare) {
+TEST_F(HardConstraints, LetGoOfInequalitiesThatHoldWithRoomToSpare) {
   expect_optimal<GoddardRocket>({4, 10, 12}, NaiveStart::kIdle);
 }
-TEST(HardConstraints, SetTheDurationAndTheFirstStateOfAMotion) {
+TEST_F(HardConstraints, SetTheDurationAndTheFirstStateOfAMotion) {
   expect_optimal<CraneInLeastTime>({0, 1, 2}, NaiveStart::kIdle);
 }
 
 #ifdef CHICANE_SLOW_TESTS
-TEST(HardConstraints, LeadAHandAlongALine) { expect_optimal<ArmOnALine>({0, 1, 3}, NaiveStart::kIdle); }
+TEST_F(HardConstraints, LeadAHandAlongALine) { expect_optimal<ArmOnALine>({0, 1, 3}, NaiveStart::kIdle); }
 #endif
 
 }  // namespace

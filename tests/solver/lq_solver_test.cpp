@@ -67,13 +67,10 @@ std::unique_ptr<LqData> random_data(Random& random, std::size_t horizon) {
   return data;
 }
 
-/// The same problem in the inputs alone: ½ uᵀ H u + gᵀ u, low <= C u + offset <= high.
+/// The same problem in the inputs alone: ½ uᵀ H u + gᵀ u, low <= u <= high.
 struct Condensed {
   Eigen::MatrixXd H;
-  Eigen::VectorXd g;
-  Eigen::MatrixXd C;
-  Eigen::VectorXd low;
-  Eigen::VectorXd high;
+  Eigen::VectorXd g, low, high;
 };
 
 template <class Pattern>
@@ -85,8 +82,7 @@ Condensed condense(const LqData& data) {
   Eigen::MatrixXd X = Eigen::MatrixXd::Zero(kNx, n + 1);
   Eigen::MatrixXd total = Eigen::MatrixXd::Zero(n + 1, n + 1);
   Condensed c;
-  c.C = Eigen::MatrixXd::Zero(n, n);
-  c.low = c.high = Eigen::VectorXd::Zero(c.C.rows());
+  c.low = c.high = Eigen::VectorXd::Zero(n);
   for (Eigen::Index k = 0; k < horizon; ++k) {
     Eigen::MatrixXd Z = Eigen::MatrixXd::Zero(kNx + 1 + kNu, n + 1);
     Z.topRows(kNx) = X;
@@ -102,10 +98,8 @@ Condensed condense(const LqData& data) {
     }
     total += Z.transpose() * L * Z;
     for (Eigen::Index m = 0; m < kNu; ++m) {
-      const Eigen::Index row = k * kNu + m;
-      c.C(row, row) = 1.0;
-      c.low(row) = data.low[k][m];
-      c.high(row) = data.high[k][m];
+      c.low(k * kNu + m) = data.low[k][m];
+      c.high(k * kNu + m) = data.high[k][m];
     }
     X = F * Z;
   }
@@ -132,33 +126,16 @@ struct Certificate {
 };
 Certificate certify(const Condensed& c, const Eigen::VectorXd& u) {
   Certificate result;
-  const Eigen::VectorXd value = c.C * u;
-  Eigen::VectorXd left = c.H * u + c.g;
-  std::vector<Eigen::Index> rows;
-  Eigen::VectorXd multiplier = Eigen::VectorXd::Zero(value.size());
-  for (Eigen::Index i = 0; i < value.size(); ++i) {
-    result.violation = std::max({result.violation, c.low(i) - value(i), value(i) - c.high(i)});
-    if (std::min(value(i) - c.low(i), c.high(i) - value(i)) < 1e-8) rows.push_back(i);
+  const Eigen::VectorXd slope = c.H * u + c.g;
+  for (Eigen::Index i = 0; i < u.size(); ++i) {
+    result.violation = std::max({result.violation, c.low(i) - u(i), u(i) - c.high(i)});
+    double left = slope(i);
+    if (u(i) - c.low(i) < 1e-8) left = std::min(left, 0.0);
+    if (c.high(i) - u(i) < 1e-8) left = std::max(left, 0.0);
+    result.gradient = std::max(result.gradient, std::fabs(left));
   }
-  for (int round = 0; round < 5000; ++round) {
-    double moved = 0.0;
-    for (const Eigen::Index i : rows) {
-      const Eigen::VectorXd normal = c.C.row(i).transpose();
-      double wanted = multiplier(i) + normal.dot(left) / normal.squaredNorm();
-      const bool at_low = value(i) - c.low(i) < 1e-8;
-      const bool at_high = c.high(i) - value(i) < 1e-8;
-      if (at_low && !at_high) wanted = std::max(wanted, 0.0);
-      if (at_high && !at_low) wanted = std::min(wanted, 0.0);
-      left -= (wanted - multiplier(i)) * normal;
-      moved = std::max(moved, std::abs(wanted - multiplier(i)));
-      multiplier(i) = wanted;
-    }
-    if (moved < 1e-13) break;
-  }
-  result.gradient = left.size() > 0 ? left.cwiseAbs().maxCoeff() : 0.0;
   return result;
 }
-
 template <class Pattern>
 LqAnswer solve(InstructionSet set, const LqData& data) {
   LqAnswer answer;

@@ -3,6 +3,7 @@
 
 #include "problems/described_problem.hpp"
 #include "problems/optimality.hpp"
+#include "support/alloc_guard.hpp"
 #include "support/chicane_test.hpp"
 
 namespace chicane {
@@ -50,11 +51,9 @@ struct OcpSolverTest : testing::Test {
     return ocp->solve(instance.problem, instance.start, trajectory, deadline);
   }
   bool is_finite_and_inside() {
-    for (int k = 0; k <= trajectory.horizon; ++k) {
-      for (const double x : trajectory.x[k]) {
+    for (int k = 0; k <= trajectory.horizon; ++k)
+      for (const double x : trajectory.x[k])
         if (!std::isfinite(x)) return false;
-      }
-    }
     return bench::inputs_are_inside(instance.problem, trajectory);
   }
 };
@@ -115,13 +114,6 @@ TEST_F(OcpSolverTest, HoldsAllInputsAtTheirBoundsWhenThatIsOptimal) {
   }
 }
 
-TEST_F(OcpSolverTest, AcceptsInfiniteBounds) {
-  instance.problem.acceleration_limit = kInfinity;
-  instance.problem.steer_limit = kInfinity;
-  ASSERT_EQ(solve().status, SolveStatus::kOptimal);
-  EXPECT_LE(bench::projected_gradient(instance.problem, instance.start, trajectory), 1e-6);
-}
-
 TEST_F(OcpSolverTest, SolvesAtZeroSpeedWhereTheWheelHasNoEffect) {
   instance.problem.acceleration_limit = 0.0;
   instance.place(0.0);
@@ -145,30 +137,13 @@ TEST_F(OcpSolverTest, ATurnTakesABoundedNumberOfSweeps) {
   EXPECT_GE(most, 15);  // some working sets are hard to find
 }
 
-TEST_F(OcpSolverTest, AMirroredProblemHasTheMirroredSolution) {
-  ASSERT_EQ(solve().status, SolveStatus::kOptimal);
-  const auto left = trajectory;
-  for (double& c : instance.problem.path) c = -c;
-  instance.place(instance.start[3]);
-  trajectory = {};
-  trajectory.horizon = 20;
-  ASSERT_EQ(solve().status, SolveStatus::kOptimal);
-  for (int k = 0; k < trajectory.horizon; ++k) {
-    EXPECT_NEAR(trajectory.u[k][0], -left.u[k][0], 1e-12);
-    EXPECT_NEAR(trajectory.u[k][1], left.u[k][1], 1e-12);
-  }
-}
-
-TEST_F(OcpSolverTest, EndsWithBudgetSpentWhenTurnsRunOutNearTheSolution) {
+TEST_F(OcpSolverTest, EndsWithBudgetSpentNearTheSolutionAndStalledFarFromIt) {
+  EXPECT_EQ(solve({.max_iterations = 1}).status, SolveStatus::kStalled);
+  EXPECT_TRUE(is_finite_and_inside());
+  trajectory.u = {};
   const SolveReport report = solve({.loose_tolerance = 1e3, .max_iterations = 1});
   EXPECT_EQ(report.status, SolveStatus::kBudgetSpent);
   EXPECT_EQ(report.iterations, 1);
-  EXPECT_TRUE(is_finite_and_inside());
-}
-
-TEST_F(OcpSolverTest, EndsWithStalledWhenTurnsRunOutFarFromTheSolution) {
-  const SolveReport report = solve({.max_iterations = 1});
-  EXPECT_EQ(report.status, SolveStatus::kStalled);
   EXPECT_TRUE(is_finite_and_inside());
 }
 
@@ -299,6 +274,29 @@ TEST_F(OcpSolverTest, RemembersNothingFromSolveToSolve) {
   EXPECT_EQ(trajectory.x, second.x);
 }
 
+TEST(AllocationGuard, CountsEveryWayToTheHeap) {
+  const test::AllocationGuard guard;
+  auto number = std::make_unique<double>(1.0);
+  EXPECT_EQ(guard.count(), 1);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  void* volatile raw = std::malloc(3);  // volatile: the compiler may not drop the pair
+  EXPECT_EQ(guard.count(), 2);
+  std::free(raw);
+#endif
+}
+
+TEST_F(OcpSolverTest, AllocatesNothingInAHundredSolves) {
+  Random random{1};
+  const test::AllocationGuard guard;
+  for (int i = 0; i < 100; ++i) {
+    instance = bench::random_instance(random, 20);
+    trajectory.horizon = 1 + i % 20;
+    ASSERT_EQ(ocp->solve(instance.problem, instance.start, trajectory).status, SolveStatus::kOptimal);
+    solver::shift(trajectory, 1.0);
+  }
+  EXPECT_EQ(guard.count(), 0);
+}
+
 TEST(OcpSolver, SecondOrderSavesTurnsWhereResidualsAreLarge) {
   int iterations[2] = {0, 0};
   for (const bool second_order : {false, true}) {
@@ -322,11 +320,7 @@ TEST(OcpSolver, SecondOrderSavesTurnsWhereResidualsAreLarge) {
 
 /// A kink at the optimum: the slope never vanishes there.
 struct KinkProblem {
-  static constexpr int kNx = 1;
-  static constexpr int kNu = 1;
-  static constexpr int kNr = 1;
-  static constexpr int kNe = 1;
-  static constexpr int kNc = 0;
+  static constexpr int kNx = 1, kNu = 1, kNr = 1, kNe = 1, kNc = 0;
   template <class T>
   std::array<T, 1> dynamics(int, const std::array<T, 1>& x, const std::array<T, 1>& u) const {
     return {x[0] + u[0]};

@@ -15,11 +15,7 @@ using Point = solver::Iterate<7, 2, kCapacity>;
 
 /// Two states that need each other, beside a sum that needs one of them.
 struct Pendulum {
-  static constexpr int kNx = 3;
-  static constexpr int kNu = 1;
-  static constexpr int kNr = 1;
-  static constexpr int kNe = 1;
-  static constexpr int kNc = 0;
+  static constexpr int kNx = 3, kNu = 1, kNr = 1, kNe = 1, kNc = 0;
   template <class K, class X, class U>
   auto dynamics(K, const X& x, const U& u) const {
     const auto& [angle, rate, turned] = x;

@@ -173,50 +173,6 @@ TEST_F(SoftOcp, KnowsTheMultiplierOfAConstraint) {
   EXPECT_GT(violated, 1);
 }
 
-TEST(WorstViolation, IsTheLargestButOneAboveItsCapBeforeAll) {
-  solver::WorstViolation worst;
-  solver::SolveReport report;
-  worst.tell(report);
-  EXPECT_EQ(report.worst_stage, -1);
-  worst.consider(-0.5, 1e30, 0, 0);
-  worst.consider(0.5, 1e30, 1, 0);  // metres, of no matter
-  worst.consider(0.2, 0.1, 2, 1);   // a share of the grip, above its cap
-  worst.consider(0.7, 1e30, 3, 0);
-  worst.consider(0.15, 0.1, 4, 1);
-  worst.consider(std::nan(""), 0.1, 5, 1);
-  worst.tell(report);
-  EXPECT_EQ(report.worst_stage, 2);
-  EXPECT_EQ(report.worst_constraint, 1);
-  EXPECT_EQ(report.violation, 0.2);
-  EXPECT_TRUE(worst.is_above_a_cap());
-}
-
-TEST_F(SoftOcp, AHigherPenaltyLeavesLessViolation) {
-  problem.window_begin = 2;
-  problem.window_end = 6;
-  problem.keep_out = 1.0;
-  double last = 1e9;
-  for (const double scale : {1.0, 30.0, 1000.0, 30000.0}) {
-    problem.penalty = {.linear = scale, .quadratic = scale};
-    ASSERT_EQ(solve().status, SolveStatus::kOptimal) << scale;
-    double penalty = 0.0;  // at unit penalty
-    for (int k = 0; k < kHorizon; ++k) {
-      for (const double value : problem.constraint(k, trajectory.x[k], trajectory.u[k])) {
-        if (value > 0.0) penalty += value + 0.5 * value * value;
-      }
-    }
-    EXPECT_LE(penalty, last + 1e-6);
-    last = penalty;
-  }
-}
-
-TEST_F(SoftOcp, APurelyQuadraticPenaltyWorks) {
-  problem.window_begin = 8;
-  problem.window_end = 12;
-  problem.penalty = {.linear = 0.0, .quadratic = 1000.0};
-  EXPECT_EQ(solve().status, SolveStatus::kOptimal);
-}
-
 TEST_F(SoftOcp, AConstraintThatIsNotANumberIsRefused) {
   problem.half_width = std::nan("");
   EXPECT_EQ(solve().status, SolveStatus::kNotFinite);

@@ -8,11 +8,7 @@ namespace {
 
 /// A system that runs away by itself, faster than any power.
 struct Runaway {
-  static constexpr int kNx = 1;
-  static constexpr int kNu = 1;
-  static constexpr int kNr = 2;
-  static constexpr int kNe = 1;
-  static constexpr int kNc = 0;
+  static constexpr int kNx = 1, kNu = 1, kNr = 2, kNe = 1, kNc = 0;
 
   template <class T>
   std::array<T, 1> dynamics(int, const std::array<T, 1>& x, const std::array<T, 1>& u) const {

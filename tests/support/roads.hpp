@@ -23,6 +23,17 @@ inline std::vector<Vec2> circle_points(double radius, int count) {
   return points_round(count, [&](double /*angle*/) { return radius; });
 }
 
+/// Points of a figure of eight, 200 m wide and twice `height` [m] high; the first one is `shift` of a gap
+/// behind the crossing.
+inline std::vector<Vec2> eight_points(int count, double height, double shift = 0.0) {
+  std::vector<Vec2> points;
+  for (int i = 0; i < count; ++i) {
+    const double angle = kTwoPi * (i + shift) / count;
+    points.emplace_back(100.0 * std::sin(angle), height * std::sin(2.0 * angle));
+  }
+  return points;
+}
+
 /// Points of a road as wide everywhere [m].
 inline std::vector<road::TrackPoint> with_widths(const std::vector<Vec2>& line, double left, double right) {
   std::vector<road::TrackPoint> points;

@@ -21,6 +21,16 @@ inline std::unique_ptr<run::ClosedLoop> loop_of(const scenario::Scenario& scenar
   return *good(run::ClosedLoop::create(scenario));
 }
 
+/// Control cycles, one after another, each told by its frame.
+template <class Told>
+void drive_cycles(run::ClosedLoop& loop, int cycles, const Told& told, double budget = 0.0) {
+  for (int done = 0; done < cycles;) {
+    if (!loop.advance(budget)) continue;
+    ++done;
+    told(loop.frame());
+  }
+}
+
 /// What `chicane drive --fast` reports.
 inline telemetry::RunSummary drive(const scenario::Scenario& scenario) {
   return run::run_closed_loop(*loop_of(scenario));

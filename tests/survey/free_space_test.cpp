@@ -24,17 +24,20 @@ FreeSpace ring(double width, double cell = 0.05) {
   return space;
 }
 
-/// Makes cells of a rectangle in W something else.
-void paint(FreeSpace& space, const Vec2& low, const Vec2& high, Cell cell) {
-  for (int y = 0; y < space.height; ++y)
-    for (int x = 0; x < space.width; ++x) {
-      const Vec2 place = space.to_world({x + 0.5, y + 0.5});
-      if (place.x() > low.x() && place.x() < high.x() && place.y() > low.y() && place.y() < high.y())
-        space.cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(space.width) +
-                    static_cast<std::size_t>(x)] = cell;
-    }
+/// Makes the cells whose middle in W is meant something else.
+template <class IsMeant>
+void paint(FreeSpace& space, Cell cell, const IsMeant& is_meant) {
+  for (int i = 0; i < space.width * space.height; ++i)
+    if (is_meant(space.to_world({i % space.width + 0.5, i / space.width + 0.5})))
+      space.cells[static_cast<std::size_t>(i)] = cell;
 }
 
+/// Those of a rectangle.
+void paint(FreeSpace& space, const Vec2& low, const Vec2& high, Cell cell) {
+  paint(space, cell, [&](const Vec2& place) {
+    return place.x() > low.x() && place.x() < high.x() && place.y() > low.y() && place.y() < high.y();
+  });
+}
 void expect_ring(const FreeLoop& loop, double width, double tolerance) {
   ASSERT_GT(loop.points.size(), 30U);
   double turned = 0.0;
@@ -62,14 +65,10 @@ TEST(FreeSpace, TheLoopIsInTheMiddleOfTheRing) {
 /// ends: in the first half of what is wider against the second half [m].
 double lead_of_a_bay(double angle) {
   FreeSpace space = ring(2.4);
-  for (int y = 0; y < space.height; ++y)
-    for (int x = 0; x < space.width; ++x) {
-      const Vec2 place = space.to_world({x + 0.5, y + 0.5});
-      const double beside = angle_difference(std::atan2(place.y(), place.x()), angle);
-      if (place.norm() > 5.1 && place.norm() < 5.7 && std::fabs(beside) < 0.24)
-        space.cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(space.width) +
-                    static_cast<std::size_t>(x)] = Cell::kFree;
-    }
+  paint(space, Cell::kFree, [&](const Vec2& place) {
+    const double beside = angle_difference(std::atan2(place.y(), place.x()), angle);
+    return place.norm() > 5.1 && place.norm() < 5.7 && std::fabs(beside) < 0.24;
+  });
   const FreeLoop loop = *find_loop(space, {});
   const std::size_t count = loop.points.size();
   const auto is_opposite = [&](const road::TrackPoint& point) {
@@ -118,13 +117,7 @@ TEST(FreeSpace, SmallSpotsOnTheRoadAreNoiseAndSaidSo) {
 TEST(FreeSpace, AStartChoosesAmongSeveralRoads) {
   FreeSpace space = ring(1.0);
   // A smaller ring in the infield of the large one.
-  for (int y = 0; y < space.height; ++y)
-    for (int x = 0; x < space.width; ++x) {
-      const double away = space.to_world({x + 0.5, y + 0.5}).norm();
-      if (away > 1.0 && away < 2.0)
-        space.cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(space.width) +
-                    static_cast<std::size_t>(x)] = Cell::kFree;
-    }
+  paint(space, Cell::kFree, [](const Vec2& place) { return place.norm() > 1.0 && place.norm() < 2.0; });
   EXPECT_NEAR(find_loop(space, {})->points.front().position.norm(), 4.0, 0.1);
   EXPECT_NEAR(find_loop(space, {.start = Vec2{1.5, 0.0}})->points.front().position.norm(), 1.5, 0.1);
   EXPECT_THAT(find_loop(space, {.start = Vec2{0.0, 0.0}}).error().message,

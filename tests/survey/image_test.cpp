@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/survey/image.hpp"
+#include "chicane/base/random.hpp"
 #include "support/chicane_test.hpp"
 
 namespace chicane::survey {
@@ -24,10 +25,7 @@ TEST(Image, ReadsTextBinaryAndPngAlike) {
 }
 
 TEST(Image, RefusesImagesThatAreCutOffTooLargeOrOfAnotherKind) {
-  const auto fault = [](std::string_view bytes) {
-    const auto image = read_image(bytes, "m.pgm");
-    return image ? std::string("nothing") : image.error().message;
-  };
+  const auto fault = [](std::string_view bytes) { return test::refusal_of(read_image(bytes, "m.pgm")); };
   EXPECT_EQ(fault("P5 3 2 255\nabc"), "m.pgm: grey value 4 of 6: got none, expected 0 to 255");
   EXPECT_EQ(fault("P2 1 1 100 101"), "m.pgm: grey value 1 of 1: got 101, expected 0 to 100");
   EXPECT_EQ(fault("P5 99999 99999 255\n"), "m.pgm: size: got 99999 x 99999, expected 1 to 64000000 cells");
@@ -35,6 +33,31 @@ TEST(Image, RefusesImagesThatAreCutOffTooLargeOrOfAnotherKind) {
   EXPECT_EQ(fault("P5 3 2 65535\n"), "m.pgm: largest grey value: got 65535, expected 1 to 255");
   EXPECT_EQ(fault("GIF89a"), "m.pgm: got other bytes, expected a PGM (P2, P5) or PNG image");
   EXPECT_EQ(fault("\x89PNG and nothing").substr(0, 6), "m.pgm:");
+}
+
+TEST(DistanceField, IsThatOfTheNearestCellThatIsSet) {
+  Random random(3);
+  for (const double share : {0.5, 0.02, 0.002}) {
+    constexpr int kWidth = 41, kHeight = 29;
+    std::vector<std::uint8_t> mask(kWidth * kHeight, 0);
+    for (std::uint8_t& cell : mask) cell = random.uniform() < share ? 1 : 0;
+    mask[17] = 1;
+    const std::vector<float> field = distance_field(mask, kWidth, kHeight);
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) {
+        double least = 1e9;
+        for (int v = 0; v < kHeight; ++v)
+          for (int u = 0; u < kWidth; ++u)
+            if (mask[static_cast<std::size_t>(v * kWidth + u)] != 0)
+              least = std::min(least, std::hypot(u - x, v - y));
+        ASSERT_NEAR(static_cast<double>(field[static_cast<std::size_t>(y * kWidth + x)]), least, 1e-4)
+            << x << ", " << y;
+      }
+  }
+}
+
+TEST(DistanceField, IsLargeWhereNothingIsSet) {
+  for (const float away : distance_field(std::vector<std::uint8_t>(12, 0), 4, 3)) EXPECT_GT(away, 1e5F);
 }
 
 }  // namespace

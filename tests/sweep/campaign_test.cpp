@@ -123,9 +123,8 @@ TEST_F(CampaignTest, TellsWhereTheCarLeavesTheRoadWithoutAnyFault) {
   int anyway = 0;
   for (const CampaignTrial& trial : (*groups)[0].trials) anyway += trial.is_off_anyway ? 1 : 0;
   EXPECT_GT(anyway, 0);
-  for (const CampaignTrial& trial : (*groups)[0].trials) {
+  for (const CampaignTrial& trial : (*groups)[0].trials)
     EXPECT_EQ(trial.is_off_anyway, trial.least_edge < 0.0) << trial.at;
-  }
 }
 
 TEST_F(CampaignTest, GoesOnPastAPlaceThatCannotBeDriven) {

@@ -78,10 +78,7 @@ claims:
 }
 
 TEST(Claim, SaysWhatIsWrongWithAFile) {
-  const auto fault = [](const std::string& text) {
-    const auto claims = parse_claims(text, "c.yaml");
-    return claims ? "none" : claims.error().message;
-  };
+  const auto fault = [](const std::string& text) { return test::refusal_of(parse_claims(text, "c.yaml")); };
   EXPECT_THAT(fault("claims: [{id: A, says: b}]"),
               HasSubstr("c.yaml:1: A: expected either cases and true_when, or found"));
   EXPECT_THAT(fault("claims: [{id: A, says: b, cases: {x: {}}, true_when: [y.clean = 1]}]"),

@@ -14,11 +14,16 @@ TuneTask task() {
           .evaluations = 4};
 }
 
-bool is_without_nlopt(const Result<Tuning>& tuning) {
-  return !tuning && tuning.error().message.find("without NLopt") != std::string::npos;
-}
+class Tune : public testing::Test, protected test::Folder {
+ protected:
+  void SetUp() override {
+    const std::string refusal = test::refusal_of(tune(task(), std::atomic<bool>{true}));
+    if (refusal.find("without NLopt") != std::string::npos) GTEST_SKIP() << refusal;
+  }
+  const std::atomic<bool> stop_{false};
+};
 
-TEST(Tune, ChangesWeightsHorizonAndSpeedOfTheControllerThatDrives) {
+TEST(TuneTask, ChangesWeightsHorizonAndSpeedOfTheControllerThatDrives) {
   const auto keys = default_keys(protocol::compose({"", {{"preset", "weighted"}}}).value());
   EXPECT_THAT(keys, Contains("cubic_mpc.weight_lateral"));
   EXPECT_THAT(keys, Contains("cubic_mpc.horizon_steps"));
@@ -27,76 +32,61 @@ TEST(Tune, ChangesWeightsHorizonAndSpeedOfTheControllerThatDrives) {
   EXPECT_THAT(keys, Not(Contains("cubic_mpc.latency_ms")));
 }
 
-TEST(Tune, FindsTheSameForTheSameSeedOnAnyNumberOfThreads) {
-  std::atomic<bool> stop{false};
+TEST_F(Tune, FindsTheSameForTheSameSeedOnAnyNumberOfThreads) {
   TuneTask one = task();
-  const auto first = tune(one, stop);
-  if (is_without_nlopt(first)) GTEST_SKIP() << first.error().message;
-  ASSERT_TRUE(first) << first.error().message;
+  const auto first = test::good(tune(one, stop_));
   EXPECT_EQ(first->evaluations, 4);
   one.jobs = 3;
-  const auto again = test::good(tune(one, stop));
+  const auto again = test::good(tune(one, stop_));
   EXPECT_EQ(again->values, first->values);
   EXPECT_EQ(again->found.margin, first->found.margin);
   EXPECT_TRUE(first->by_hand.lap_time > 0.0);
 }
 
-TEST(Tune, ASearchThatWasEndedGoesOnWithItsLogAndFindsTheSame) {
-  const test::Folder folder;
-  std::atomic<bool> stop{false};
+TEST_F(Tune, ASearchThatWasEndedGoesOnWithItsLogAndFindsTheSame) {
   TuneTask whole = task();
   whole.evaluations = 6;
-  whole.log = folder.path("whole.jsonl");
-  const auto expected = tune(whole, stop);
-  if (is_without_nlopt(expected)) GTEST_SKIP() << expected.error().message;
-  ASSERT_TRUE(expected) << expected.error().message;
+  whole.log = path("whole.jsonl");
+  const auto expected = test::good(tune(whole, stop_));
 
   TuneTask parts = whole;
-  parts.log = folder.path("parts.jsonl");
+  parts.log = path("parts.jsonl");
   parts.evaluations = 3;
-  ASSERT_TRUE(tune(parts, stop));
+  ASSERT_TRUE(tune(parts, stop_));
   std::ofstream(parts.log, std::ios::app) << R"({"values":{"pure_purs)";  // a process was killed there
   parts.evaluations = 6;
-  const auto found = test::good(tune(parts, stop));
+  const auto found = test::good(tune(parts, stop_));
   EXPECT_EQ(found->values, expected->values);
   EXPECT_EQ(found->found.margin, expected->found.margin);
   EXPECT_EQ(found->runs, expected->runs);
   EXPECT_EQ(test::content_of(parts.log), test::content_of(whole.log));
 
-  const auto again = tune(whole, stop);  // all is known
+  const auto again = tune(whole, stop_);  // all is known
   ASSERT_TRUE(again);
   EXPECT_EQ(test::content_of(parts.log), test::content_of(whole.log)) << "nothing was driven twice";
 
   TuneTask other = whole;
   other.settings.emplace_back("plant_options.friction_scale", "0.8");
-  EXPECT_THAT(tune(other, stop).error().message, HasSubstr("log of another search"));
+  EXPECT_THAT(tune(other, stop_).error().message, HasSubstr("log of another search"));
 }
 
-TEST(Tune, ALogIsNotGoneOnWithWhenThePresetHasChanged) {
-  const test::Folder folder;
-  std::atomic<bool> stop{false};
+TEST_F(Tune, ALogIsNotGoneOnWithWhenThePresetHasChanged) {
   TuneTask theirs = task();
   theirs.evaluations = 1;
-  theirs.log = folder.path("theirs.jsonl");
-  const std::string preset = folder.path("theirs.yaml");
+  theirs.log = path("theirs.jsonl");
+  const std::string preset = path("theirs.yaml");
   theirs.settings[0].second = preset;
   std::ofstream(preset) << "controller: pure-pursuit\npure_pursuit: {lookahead_min_m: 5}\n";
-  const auto first = tune(theirs, stop);
-  if (is_without_nlopt(first)) GTEST_SKIP() << first.error().message;
-  ASSERT_TRUE(first) << first.error().message;
+  const auto first = test::good(tune(theirs, stop_));
   std::ofstream(preset) << "controller: pure-pursuit\npure_pursuit: {lookahead_min_m: 6}\n";
-  EXPECT_THAT(tune(theirs, stop).error().message, HasSubstr("log of another search"));
+  EXPECT_THAT(tune(theirs, stop_).error().message, HasSubstr("log of another search"));
 }
 
-TEST(Tune, WhatCannotWinIsTriedNoFurther) {
-  const test::Folder folder;
-  std::atomic<bool> stop{false};
+TEST_F(Tune, WhatCannotWinIsTriedNoFurther) {
   TuneTask hasty = task();
   hasty.evaluations = 20;
-  hasty.log = folder.path("hasty.jsonl");
-  const auto tuning = tune(hasty, stop);
-  if (is_without_nlopt(tuning)) GTEST_SKIP() << tuning.error().message;
-  ASSERT_TRUE(tuning);
+  hasty.log = path("hasty.jsonl");
+  const auto tuning = test::good(tune(hasty, stop_));
   const auto trials = static_cast<int>(tune_trials(0.1).size());
   EXPECT_EQ(tuning->by_hand.driven, trials);
   EXPECT_EQ(tuning->found.passed, trials);
@@ -107,19 +97,16 @@ TEST(Tune, WhatCannotWinIsTriedNoFurther) {
 }
 
 #ifdef CHICANE_SLOW_TESTS
-TEST(Tune, ASearchThatHasConvergedGoesOnUntilItHasTriedWhatWasAsked) {
-  std::atomic<bool> stop{false};
+TEST_F(Tune, ASearchThatHasConvergedGoesOnUntilItHasTriedWhatWasAsked) {
   TuneTask local = task();
   local.optimizer = Optimizer::kSbplx;
   local.evaluations = 80;  // of one number: converges after 65
-  const auto tuning = tune(local, stop);
-  if (is_without_nlopt(tuning)) GTEST_SKIP() << tuning.error().message;
-  ASSERT_TRUE(tuning) << tuning.error().message;
+  const auto tuning = test::good(tune(local, stop_));
   EXPECT_EQ(tuning->evaluations, 80);
 }
 #endif
 
-TEST(Tune, HasEachTrialOfItsOwn) {
+TEST(TuneTask, HasEachTrialOfItsOwn) {
   const auto trials = tune_trials(0.02);
   for (std::size_t i = 0; i < trials.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) EXPECT_NE(trials[i].settings, trials[j].settings) << i << ' ' << j;
@@ -127,23 +114,20 @@ TEST(Tune, HasEachTrialOfItsOwn) {
     EXPECT_TRUE(protocol::compose({"", trial.settings})) << trial.name << " is what every run takes";
 }
 
-TEST(Tune, AWorseTuningIsNeverCalledBetter) {
-  std::atomic<bool> stop{false};
+TEST_F(Tune, AWorseTuningIsNeverCalledBetter) {
   for (const Objective objective : {Objective::kLap, Objective::kRobust}) {
     TuneTask each = task();
     each.objective = objective;
     each.optimizer = Optimizer::kSbplx;
-    const auto tuning = tune(each, stop);
-    if (is_without_nlopt(tuning)) GTEST_SKIP() << tuning.error().message;
-    ASSERT_TRUE(tuning);
+    const auto tuning = test::good(tune(each, stop_));
     if (!tuning->is_better) continue;
     EXPECT_TRUE(tuning->found.is_clean());
     EXPECT_GE(tuning->found.margin, tuning->by_hand.margin);
   }
 }
 
-TEST(Tune, RefusesWhatIsNoNumberAboveZero) {
-  std::atomic<bool> stop{false};
+TEST(TuneTask, RefusesWhatIsNoNumberAboveZero) {
+  const std::atomic<bool> stop{false};
   for (const char* key : {"pure_pursuit.nothing", "track", "sensor.position_noise_m"}) {
     TuneTask wrong = task();
     wrong.over = {key};

@@ -49,23 +49,17 @@ TEST(Metrics, MeasuresALapFromEveryPhysicsStep) {
   EXPECT_FALSE(run.laps[0].gap_to_limit.has_value());
 }
 
-TEST(Metrics, KeepsTheCornersOfEachLap) {
-  Metrics metrics(2, 0.1, 2);
+TEST(Metrics, KeepsTheCornersOfEachLapThatWereTimed) {
+  Metrics metrics(3, 0.1, 2);
   metrics.lap_completed(1.0, {0.3, 0.3, 0.4}, std::array{0.4, 0.6});
   metrics.lap_completed(1.1, {0.3, 0.3, 0.5}, std::array{0.5, 0.6});
-  metrics.lap_completed(1.2, {0.3, 0.3, 0.6}, std::array{0.6, 0.6});
+  metrics.lap_completed(1.2);
   const RunSummary run = metrics.summary();
-  ASSERT_EQ(run.laps.size(), 2u);
+  ASSERT_EQ(run.laps.size(), 3u);
   EXPECT_EQ(run.laps[0].corner_times, (std::vector{0.4, 0.6}));
   EXPECT_EQ(run.laps[1].corner_times, (std::vector{0.5, 0.6}));
-}
-
-TEST(Metrics, SaysNothingOfCornersThatWereNotTimed) {
-  Metrics metrics(2, 0.1, 2);
-  metrics.lap_completed(1.0);
-  const RunSummary run = metrics.summary();
-  ASSERT_EQ(run.laps[0].corner_times.size(), 2u);
-  EXPECT_TRUE(std::isnan(run.laps[0].corner_times[0]));
+  ASSERT_EQ(run.laps[2].corner_times.size(), 2u);
+  EXPECT_TRUE(std::isnan(run.laps[2].corner_times[0]));
 }
 
 TEST(Metrics, ANewLapStartsFromZeroAndTheTotalGoesOn) {
@@ -299,14 +293,6 @@ controller::Plan plan_from(double time) {
   return plan;
 }
 
-TEST(PredictionCheck, HasNoErrorBeforeTheFirstPredictionIsDue) {
-  PredictionCheck check;
-  EXPECT_TRUE(std::isnan(check.error(0.0, {0.0, 0.0})));
-  check.add(plan_from(0.1), 0.05);  // predicts a place at 0.15 s
-  check.add(plan_from(0.15), 0.05);
-  EXPECT_TRUE(std::isnan(check.error(0.1, {0.0, 0.0})));
-}
-
 TEST(PredictionCheck, IsTheDistanceFromWherePlansOfOneDelayAndPeriodAgoSaid) {
   PredictionCheck check;
   for (int cycle = 0; cycle < 20; ++cycle) {
@@ -340,6 +326,24 @@ TEST(PredictionCheck, ForgetsTheOldestWhenMoreIsPredictedThanItHolds) {
   for (int cycle = 0; cycle < 1000; ++cycle) check.add(plan_from(0.01 * cycle), 0.01);
   EXPECT_TRUE(std::isnan(check.error(1.0, {10.0, 0.0})));
   EXPECT_NEAR(check.error(9.0, {90.0, 0.0}), 0.0, 1e-9);
+}
+
+TEST(ShortText, KeepsWhatFitsAndCutsTheRest) {
+  EXPECT_EQ(ShortText<4>{}.view(), "");
+  EXPECT_EQ(ShortText<4>{"abcd"}.view(), "abcd");
+  EXPECT_EQ(ShortText<4>{std::string("abcdef")}.view(), "abcd");
+  EXPECT_TRUE(ShortText<4>::fits("abcd"));
+  EXPECT_FALSE(ShortText<4>::fits("abcde"));
+}
+
+TEST(Change, HasRoomForTheLongestKeyAndItsValue) {
+  const std::string name(64, 'n');
+  const std::string value(256, 'v');
+  const Change change{.cycle = 3, .time = 0.12, .name = name, .value = value};
+  const Change copy = change;
+  EXPECT_EQ(copy.name.view(), name);
+  EXPECT_EQ(copy.value.view(), value);
+  EXPECT_FALSE(copy.starts_anew);
 }
 
 }  // namespace

@@ -169,23 +169,17 @@ TEST_F(Estimating, FollowsACarThatSlidesWhenItStarts) {
   }
 }
 
-TEST_F(Estimating, CountsOnWithoutNumbersAndIgnoresWhatIsOutOfOrder) {
+TEST_F(Estimating, CountsOnWithoutNumbersAndIgnoresWhatIsNotNewer) {
   estimator.correct({.time = 0.0, .speed = 10.0}, sent);
   estimator.correct({.time = 0.05, .x = std::numeric_limits<double>::quiet_NaN(), .speed = 10.0}, sent);
   EXPECT_NEAR(estimator.state().x, 0.5, 0.01) << "10 m/s for 0.05 s, and a little drag";
   const model::State before = estimator.state();
-  estimator.correct({.time = -0.05, .x = 5.0, .speed = 10.0}, sent);
-  EXPECT_EQ(estimator.state().x, before.x);
+  for (const double time : {-0.05, 0.05}) {
+    estimator.correct({.time = time, .x = 5.0, .speed = 12.0}, sent);
+    EXPECT_EQ(estimator.state().x, before.x) << time;
+    EXPECT_EQ(estimator.state().vx, before.vx) << time;
+  }
   EXPECT_TRUE(std::isfinite(estimator.predict(0.2, sent).state.x));
-}
-
-TEST_F(Estimating, IgnoresAMeasurementOfTheSameTime) {
-  estimator.correct({.time = 0.0, .speed = 10.0}, sent);
-  estimator.correct({.time = 0.05, .x = 0.5, .speed = 10.0}, sent);
-  const model::State before = estimator.state();
-  estimator.correct({.time = 0.05, .x = 0.9, .speed = 12.0}, sent);
-  EXPECT_EQ(estimator.state().x, before.x);
-  EXPECT_EQ(estimator.state().vx, before.vx);
 }
 
 TEST_F(Estimating, IsNotKickedByANoisySensor) {
@@ -231,7 +225,7 @@ TEST_F(Estimating, TakesWhatItMissedWhileBlindForADriftNotForAKick) {
 struct SofterCar {
   double worst_yaw_rate = 0.0, worst_slide = 0.0;
   Disturbance disturbance;
-  enum class Lacks { kNothing, kSpeed, kPlace };
+  enum class Lacks { kNothing, kSpeedReading, kPlace };
   explicit SofterCar(double side, bool with_disturbance = true, Lacks lacks = Lacks::kNothing) {
     model::VehicleParams softer = model::road_car_params();
     softer.cornering_front *= 0.8;
@@ -249,7 +243,7 @@ struct SofterCar {
           .time = time, .x = s.x, .y = s.y, .psi = s.psi, .speed = hypot(s.vx, s.vy)};
       truth.correct(seen, sent);
       model::Measurement part = seen;
-      if (lacks == Lacks::kSpeed) part.speed = std::nan("");
+      if (lacks == Lacks::kSpeedReading) part.speed = std::nan("");
       if (lacks == Lacks::kPlace) part.x = part.y = std::nan("");
       assumed.correct(part, sent);
       if (i < 20) continue;  // until the disturbance is there
@@ -275,7 +269,7 @@ TEST(StateEstimator, FindsWhatTheModelLacks) {
 
 TEST(StateEstimator, FindsItWithoutTheSpeedToo) {
   const SofterCar all(1.0);
-  const SofterCar no_speed(1.0, true, SofterCar::Lacks::kSpeed);
+  const SofterCar no_speed(1.0, true, SofterCar::Lacks::kSpeedReading);
   EXPECT_NEAR(no_speed.disturbance.yaw, all.disturbance.yaw, 0.1 * std::fabs(all.disturbance.yaw));
   EXPECT_LT(no_speed.worst_yaw_rate, 1.2 * all.worst_yaw_rate);
   EXPECT_LT(no_speed.worst_slide, 1.2 * all.worst_slide);
@@ -298,6 +292,35 @@ TEST(StateEstimator, ForgetsADisturbanceThatIsNotMeasuredAnew) {
   ASSERT_GT(yaw, 0.2);
   EXPECT_NEAR(estimator.predict(0.9, sent).disturbance.yaw, yaw * std::exp(-0.5 / Disturbance::kTime),
               0.01 * yaw);
+}
+
+TEST(CommandHistory, HoldsEachCommandUntilTheNextActs) {
+  CommandHistory sent;
+  EXPECT_EQ(sent.at(1.0).steer, 0.0);
+  sent.add(1.0, {.steer = 0.1, .throttle = 0.2});
+  sent.add(1.5, {.steer = 0.3, .throttle = 0.4});
+  EXPECT_EQ(sent.at(0.99).steer, 0.0);
+  EXPECT_EQ(sent.at(1.0).steer, 0.1);
+  EXPECT_EQ(sent.at(1.49).steer, 0.1);
+  EXPECT_EQ(sent.at(9.0).steer, 0.3);
+  EXPECT_EQ(sent.next_change(1.0, 2.0), 1.5);
+  EXPECT_EQ(sent.next_change(1.5, 2.0), 2.0);
+}
+
+TEST(CommandHistory, ALaterCommandReplacesThoseThatWouldActAfterIt) {
+  CommandHistory sent;
+  sent.add(1.0, {.steer = 0.1});
+  sent.add(2.0, {.steer = 0.2});
+  sent.add(1.5, {.steer = 0.3});  // the delay got shorter
+  EXPECT_EQ(sent.at(3.0).steer, 0.3);
+  EXPECT_EQ(sent.at(1.2).steer, 0.1);
+}
+
+TEST(CommandHistory, ForgetsTheOldestWhenFull) {
+  CommandHistory sent;
+  for (int i = 0; i < 500; ++i) sent.add(0.1 * i, {.steer = 0.001 * i});
+  EXPECT_DOUBLE_EQ(sent.at(49.95).steer, 0.499);
+  EXPECT_EQ(sent.at(0.0).steer, 0.0);
 }
 
 }  // namespace

@@ -65,15 +65,30 @@ inline std::uint32_t channel_of(std::string_view topic) {
   return 0;
 }
 
+inline std::string subscribe(std::uint32_t id, std::size_t channel) {
+  return json{{"op", "subscribe"}, {"subscriptions", {{{"id", id}, {"channelId", channel}}}}}.dump();
+}
 inline std::string subscribe(std::uint32_t id, std::string_view topic) {
-  return json{{"op", "subscribe"}, {"subscriptions", {{{"id", id}, {"channelId", channel_of(topic)}}}}}
-      .dump();
+  return subscribe(id, std::size_t{channel_of(topic)});
 }
 
 inline std::uint32_t subscription_of(const FakeServer::Sent& message) {
   std::uint32_t id = 0;
   std::memcpy(&id, message.bytes->data() + 1, sizeof(id));
   return id;
+}
+
+/// Times of the messages of a subscription [s].
+inline std::vector<double> times_of(const std::vector<FakeServer::Sent>& messages, net::ConnectionId to,
+                                    std::uint32_t subscription) {
+  std::vector<double> found;
+  for (const auto& message : messages) {
+    if (message.to != to || message.bytes->front() != 1 || subscription_of(message) != subscription) continue;
+    std::uint64_t nanoseconds = 0;
+    std::memcpy(&nanoseconds, message.bytes->data() + 5, sizeof(nanoseconds));
+    found.push_back(1e-9 * static_cast<double>(nanoseconds));
+  }
+  return found;
 }
 
 inline std::string service_call(std::uint32_t service, std::string_view payload) {
@@ -97,7 +112,17 @@ class Viewer : public testing::Test {
     EXPECT_TRUE(endpoint->on_upgrade(request).accept);
     endpoint->on_open(id);
   }
-  void say(const std::string& text) { endpoint->on_message(1, text, false); }
+  /// Another one that has read what there is.
+  void join(net::ConnectionId id, const std::string& target = "/viewer") {
+    connect(id, false, target);
+    server.take();
+  }
+  void say(const std::string& text, net::ConnectionId id = 1) { endpoint->on_message(id, text, false); }
+  /// What is sent when time passes.
+  std::vector<FakeServer::Sent> news() {
+    server.pass_time();
+    return server.take();
+  }
   /// The only text message that has come since the last look.
   json answer() {
     const auto messages = server.take();
@@ -132,9 +157,11 @@ class Store : public protocol::foxglove::ParameterStore {
   }
   std::vector<std::string> complaints() override { return std::exchange(sentences, {}); }
   std::vector<telemetry::Change> applied() override { return std::exchange(changes, {}); }
+  std::vector<protocol::foxglove::Parameter> news() override { return std::exchange(waiting, {}); }
   double a = 1.0;
   std::vector<std::string> sentences;
   std::vector<telemetry::Change> changes;
+  std::vector<protocol::foxglove::Parameter> waiting;
 };
 
 }  // namespace chicane::wire

@@ -193,16 +193,6 @@ TEST(Serve, NamesTheSceneThatIsNotOurs) {
   EXPECT_TRUE(served.has_logged("PID Controller"));
 }
 
-TEST(Serve, WhateverTheControllerSaysTheAnswerIsFinite) {
-  Served served;
-  served.controller.answer({.steer = std::numeric_limits<double>::quiet_NaN(),
-                            .throttle = std::numeric_limits<double>::infinity()});
-  RawSocket client = served.connect();
-  driven(client);
-  served.stop();
-  EXPECT_EQ(served.summary().run.fallbacks, 1U);
-}
-
 TEST(Serve, ASecondSimulatorIsRefusedInWordsWhileTheFirstIsDriven) {
   Served served;
   RawSocket first = served.connect();

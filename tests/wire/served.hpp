@@ -7,7 +7,7 @@
 #include <type_traits>
 
 #include "chicane/wire/serve.hpp"
-#include "net/raw_socket.hpp"
+#include "net/recorder.hpp"
 #include "support/borrowed.hpp"
 #include "support/chicane_test.hpp"
 
@@ -25,7 +25,7 @@ class FixedController final : public controller::Controller {
   const controller::StepResult& step(const model::Measurement& now, Deadline) noexcept override {
     const std::lock_guard lock(mutex_);
     result_.answer = std::isfinite(now.x) ? controller::Answer::kDrive : controller::Answer::kNone;
-    result_.command = command_;
+    result_.command = {.steer = 0.1, .throttle = 0.5};
     last_ = now;
     ++steps_;
     return result_;
@@ -36,26 +36,18 @@ class FixedController final : public controller::Controller {
   }
   [[nodiscard]] std::string_view name() const noexcept override { return "fixed"; }
 
-  void answer(const model::Command& command) {
-    const std::lock_guard lock(mutex_);
-    command_ = command;
-  }
-  [[nodiscard]] model::Measurement last() {
-    const std::lock_guard lock(mutex_);
-    return last_;
-  }
-  [[nodiscard]] int resets() {
-    const std::lock_guard lock(mutex_);
-    return resets_;
-  }
-  [[nodiscard]] int steps() {
-    const std::lock_guard lock(mutex_);
-    return steps_;
-  }
+  [[nodiscard]] model::Measurement last() { return locked(last_); }
+  [[nodiscard]] int resets() { return locked(resets_); }
+  [[nodiscard]] int steps() { return locked(steps_); }
 
  private:
+  template <class Value>
+  Value locked(const Value& value) {
+    const std::lock_guard lock(mutex_);
+    return value;
+  }
+
   std::mutex mutex_;
-  model::Command command_{.steer = 0.1, .throttle = 0.5};
   model::Measurement last_;
   int resets_ = 0;
   int steps_ = 0;
@@ -108,12 +100,7 @@ class Served {
   [[nodiscard]] ServeSummary summary() const { return endpoint_->summary(); }
 
   /// A client that has sent the original's upgrade request and got its 101.
-  [[nodiscard]] RawSocket connect() const {
-    RawSocket socket(port());
-    socket.send(unity_handshake(port()));
-    EXPECT_THAT(socket.until("\r\n\r\n"), StartsWith("HTTP/1.1 101"));
-    return socket;
-  }
+  [[nodiscard]] RawSocket connect() const { return upgraded(port()); }
 
   /// Waits for a logged line that contains `words`.
   [[nodiscard]] bool has_logged(std::string_view words) {

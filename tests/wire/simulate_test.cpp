@@ -22,12 +22,19 @@ const std::string kStraight =
 class ScriptedServer {
  public:
   using Script = std::function<std::vector<std::string>(int n, const std::string& message)>;
-  explicit ScriptedServer(Script script, std::chrono::milliseconds latency = 0ms)
+  explicit ScriptedServer(
+      Script script = [](int, const std::string&) { return std::vector{kStraight}; },
+      std::chrono::milliseconds latency = 0ms)
       : script_{std::move(script)} {
     auto created = net::Server::create(
         {.port = 0},
         {.on_start = [this](net::Server& server) { server_ = &server; },
-         .on_upgrade = [](const net::UpgradeRequest&) { return net::UpgradeAnswer{.accept = true}; },
+         .on_upgrade =
+             [this](const net::UpgradeRequest& request) {
+               const std::lock_guard lock(mutex_);
+               target_ = request.target;
+               return net::UpgradeAnswer{.accept = true};
+             },
          .on_open = [](net::ConnectionId, int) {},
          .on_message =
              [this, latency](net::ConnectionId id, int, std::string_view bytes, bool) {
@@ -50,8 +57,13 @@ class ScriptedServer {
   ScriptedServer(const ScriptedServer&) = delete;
   ScriptedServer& operator=(const ScriptedServer&) = delete;
 
-  [[nodiscard]] std::string url() const {
-    return "ws://127.0.0.1:" + std::to_string(owner_->port()) + "/socket.io/?EIO=4";
+  [[nodiscard]] std::string url(const std::string& path = "/socket.io/?EIO=4") const {
+    return "ws://127.0.0.1:" + std::to_string(owner_->port()) + path;
+  }
+  /// What the simulator asked for when it connected.
+  [[nodiscard]] std::string target() {
+    const std::lock_guard lock(mutex_);
+    return target_;
   }
   [[nodiscard]] std::vector<std::string> messages() {
     const std::lock_guard lock(mutex_);
@@ -64,6 +76,7 @@ class ScriptedServer {
   Script script_;
   std::mutex mutex_;
   std::vector<std::string> messages_;
+  std::string target_;
   bool is_answering_ = false;
   std::atomic<int> pipelined_{0};
   net::Server* server_ = nullptr;
@@ -114,7 +127,7 @@ TEST(Simulate, EndsWithAProgramThatNeverAnswersWhereItShall) {
 }
 
 TEST(Simulate, SendsWhatTheOriginalSends) {
-  ScriptedServer server([](int, const std::string&) { return std::vector{kStraight}; });
+  ScriptedServer server;
   static_cast<void>(run({.url = server.url()}, short_run(0.3)));
   ASSERT_FALSE(server.messages().empty());
   EXPECT_THAT(
@@ -130,7 +143,7 @@ TEST(Simulate, SendsTheWaypointsOfTheMeasuredPlaceAsDriveDoes) {
   scenario::Scenario noisy = short_run(1.0);
   noisy.sensor.position_noise = 8.0;  // other waypoints than those of the true place, now and then
   const road::Track points = run::make_waypoints(run::make_track(noisy).value()).value();
-  ScriptedServer server([](int, const std::string&) { return std::vector{kStraight}; });
+  ScriptedServer server;
   int frames = 0;
   const std::atomic<bool> stop{false};
   const auto report =
@@ -151,7 +164,7 @@ TEST(Simulate, SendsTheWaypointsOfTheMeasuredPlaceAsDriveDoes) {
 }
 
 TEST(Simulate, TheEchoIsOneCycleOld) {
-  ScriptedServer server([](int, const std::string&) { return std::vector{kStraight}; });
+  ScriptedServer server;
   static_cast<void>(run({.url = server.url()}, short_run(0.5)));
   const std::vector<std::string> messages = server.messages();
   ASSERT_GE(messages.size(), 3U);
@@ -224,24 +237,11 @@ TEST(Simulate, HoldsTheLastCommandOfAControllerThatFallsSilentWhereItIsTold) {
 
 TEST(Simulate, SaysThatItPlaysStopPlansUnlessItHoldsAsTheOriginal) {
   const auto target = [](safety::Receiver receiver, const std::string& path) {
-    std::string asked;
-    std::mutex mutex;
-    auto server = net::Server::create({.port = 0},
-                                      {.on_upgrade =
-                                           [&](const net::UpgradeRequest& request) {
-                                             const std::lock_guard lock(mutex);
-                                             asked = request.target;
-                                             return net::UpgradeAnswer{.accept = true};
-                                           },
-                                       .on_open = [](net::ConnectionId, int) {},
-                                       .on_message = [](net::ConnectionId, int, std::string_view, bool) {},
-                                       .on_close = [](net::ConnectionId, int, std::string_view) {}},
-                                      {});
+    ScriptedServer server;
     scenario::Scenario scenario = short_run(0.1);
     scenario.guard.receiver = receiver;
-    static_cast<void>(run({.url = "ws://127.0.0.1:" + std::to_string((*server)->port()) + path}, scenario));
-    server->reset();
-    return asked;
+    static_cast<void>(run({.url = server.url(path)}, scenario));
+    return server.target();
   };
   EXPECT_EQ(target(safety::Receiver::kStopPlan, "/socket.io/?EIO=4"), "/socket.io/?EIO=4&stop_plan=1");
   EXPECT_EQ(target(safety::Receiver::kStopPlan, "/x"), "/x?stop_plan=1");

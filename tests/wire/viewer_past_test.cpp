@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a viewer that comes late gets, in which order, and how much at a time.
-#include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <thread>
 
 #include "wire/fake_viewer.hpp"
@@ -10,23 +8,7 @@
 namespace chicane::wire {
 namespace {
 
-/// Times of the messages of a subscription that were sent since the last look [s].
-std::vector<double> times_of(FakeServer& server, net::ConnectionId to, std::uint32_t subscription) {
-  std::vector<double> found;
-  for (const auto& message : server.take()) {
-    if (message.to != to || message.bytes->front() != 1 || subscription_of(message) != subscription) continue;
-    std::uint64_t nanoseconds = 0;
-    std::memcpy(&nanoseconds, message.bytes->data() + 5, sizeof(nanoseconds));
-    found.push_back(1e-9 * static_cast<double>(nanoseconds));
-  }
-  return found;
-}
-
-std::string subscribe_past(std::uint32_t id) {
-  return json{{"op", "subscribe"},
-              {"subscriptions", {{{"id", id}, {"channelId", protocol::ros_topics().size()}}}}}
-      .dump();
-}
+std::string subscribe_past(std::uint32_t id) { return subscribe(id, protocol::ros_topics().size()); }
 
 /// A run of 300 frames.
 class ViewerOfAPast : public Viewer {
@@ -41,9 +23,7 @@ class ViewerOfAPast : public Viewer {
     }
   }
   void begin() {
-    ViewerOptions options;
-    options.clock = [this] { return clock; };
-    start(std::move(options));
+    start({.clock = [this] { return clock; }});
     drive(300);
     server.take();
   }
@@ -56,38 +36,28 @@ TEST_F(ViewerOfAPast, GetsThePresentAtOnceAndTheFramesOfBeforeBehindIt) {
   connect(2, false, "/viewer?x=1&past");
   connect(3, false, "/viewer?passed");
   server.take();
-  endpoint->on_message(3, subscribe_past(5), false);
+  say(subscribe_past(5), 3);
   EXPECT_THAT(answer()["message"].get<std::string>(), HasSubstr("no channel")) << "it has not asked";
-  endpoint->on_message(2, subscribe(4, "/chicane/frame"), false);
-  EXPECT_EQ(times_of(server, 2, 4).size(), 1U);
-  endpoint->on_message(2, subscribe_past(5), false);
-  drive(1);
-  const auto first = std::exchange(server.sent, {});
+  say(subscribe(4, "/chicane/frame"), 2);
+  EXPECT_EQ(times_of(server.take(), 2, 4).size(), 1U);
+  say(subscribe_past(5), 2);
+  std::vector<int> left;  // what it is told of
+  const auto after_a_frame = [&] {
+    drive(1);
+    const auto messages = server.take();
+    for (const auto& message : messages)
+      if (message.to == 2 && !message.binary) left.push_back(json::parse(*message.bytes)["messages"]);
+    return messages;
+  };
+  const auto first = after_a_frame();
   EXPECT_EQ(subscription_of(first.at(1)), 4U) << "the time, then the newest frame";
-  server.sent = first;
-  std::vector<double> seen = times_of(server, 2, 5);
+  std::vector<double> seen = times_of(first, 2, 5);
   EXPECT_EQ(seen.size(), 192U) << "a page, and the next one when it has been read";
-  drive(1);
-  for (const double time : times_of(server, 2, 5)) seen.push_back(time);
+  for (const double time : times_of(after_a_frame(), 2, 5)) seen.push_back(time);
   ASSERT_EQ(seen.size(), 300U) << "those that were before it subscribed";
   for (std::size_t i = 0; i < seen.size(); ++i)
     EXPECT_NEAR(seen[i], 0.04 * (300.0 - static_cast<double>(i)), 1e-6);
-  drive(1);
-  EXPECT_TRUE(times_of(server, 2, 5).empty());
-}
-
-TEST_F(ViewerOfAPast, IsToldHowMuchOfItIsLeft) {
-  begin();
-  connect(2, false, "/viewer?past");
-  endpoint->on_message(2, subscribe_past(5), false);
-  server.take();
-  std::vector<int> left;
-  for (int i = 0; i < 4; ++i) {
-    drive(1);
-    for (const auto& message : server.take()) {
-      if (message.to == 2 && !message.binary) left.push_back(json::parse(*message.bytes)["messages"]);
-    }
-  }
+  EXPECT_TRUE(times_of(after_a_frame(), 2, 5).empty());
   EXPECT_EQ(left, (std::vector{108, 0}));
 }
 
@@ -95,8 +65,8 @@ TEST_F(ViewerOfAPast, HasTheLastLapBeforeItIsSentAway) {
   begin();
   connect(2, false, "/viewer?paced");
   endpoint->on_close(1, "");
-  endpoint->on_message(2, subscribe(4, "/chicane/frame"), false);
-  endpoint->on_message(2, subscribe(5, "/chicane/lap"), false);
+  say(subscribe(4, "/chicane/frame"), 2);
+  say(subscribe(5, "/chicane/lap"), 2);
   std::size_t sent = 0;
   int laps = 0;
   const auto look = [&] {
@@ -117,7 +87,7 @@ TEST_F(ViewerOfAPast, HasTheLastLapBeforeItIsSentAway) {
   });
   for (int i = 0; i < 10'000 && server.closed.empty(); ++i) {
     read = std::min(sent, read + 100);
-    endpoint->on_message(2, json{{"op", "received"}, {"bytes", read}, {"at", clock}}.dump(), false);
+    say(json{{"op", "received"}, {"bytes", read}, {"at", clock}}.dump(), 2);
     std::this_thread::sleep_for(std::chrono::microseconds{100});
     server.pass_time();
     look();
@@ -140,7 +110,7 @@ class ViewerAtTheEnd : public ViewerOfAPast {
   Clock::duration wait(bool reads, const ViewerEndpoint::Patience& patience) {
     begin();
     connect(2, false, "/viewer?past&paced");
-    endpoint->on_message(2, subscribe_past(5), false);
+    say(subscribe_past(5), 2);
     drive(20);
     const auto begin = Clock::now();
     std::atomic<bool> is_over{false};
@@ -149,7 +119,7 @@ class ViewerAtTheEnd : public ViewerOfAPast {
       is_over = true;
     });
     for (std::size_t read = 0; !is_over; read += reads ? 1 : 0) {
-      endpoint->on_message(2, json{{"op", "received"}, {"bytes", read}, {"at", clock}}.dump(), false);
+      say(json{{"op", "received"}, {"bytes", read}, {"at", clock}}.dump(), 2);
       server.pass_time();
       std::this_thread::sleep_for(Milliseconds{2});
     }
@@ -176,10 +146,9 @@ TEST_F(Viewer, GetsAllLapsBeforeTheFramesOfBefore) {
     endpoint->publish(frame);
     server.pass_time();
   }
-  connect(2, false, "/viewer?past");
-  server.take();
-  endpoint->on_message(2, subscribe_past(4), false);
-  endpoint->on_message(2, subscribe(5, "/chicane/lap"), false);
+  join(2, "/viewer?past");
+  say(subscribe_past(4), 2);
+  say(subscribe(5, "/chicane/lap"), 2);
   std::string order;
   for (int i = 0; i < 4; ++i) {
     for (const auto& message : server.take()) {

@@ -7,17 +7,15 @@ namespace {
 
 TEST_F(Viewer, ThatMayWatchOnlyChangesNothing) {
   Store store;
-  ViewerOptions options;
-  options.parameters = &store;
+  ViewerOptions options{.parameters = &store};
   bool is_paused = false;
   options.services.pause = [&](bool paused) -> Result<void> {
     is_paused = paused;
     return {};
   };
   start(std::move(options));
-  connect(2, false);
-  server.take();
-  endpoint->on_message(2, R"({"op":"setParameters","parameters":[{"name":"a","value":7}],"id":"x"})", false);
+  join(2);
+  say(R"({"op":"setParameters","parameters":[{"name":"a","value":7}],"id":"x"})", 2);
   auto messages = server.take();
   ASSERT_EQ(messages.size(), 2U);
   EXPECT_THAT(*messages[0].bytes, HasSubstr("this connection may watch only"));
@@ -26,7 +24,7 @@ TEST_F(Viewer, ThatMayWatchOnlyChangesNothing) {
   endpoint->on_message(2, service_call(0, "\1"), true);
   EXPECT_THAT(answer()["message"].get<std::string>(), HasSubstr("this connection may watch only"));
   EXPECT_FALSE(is_paused);
-  endpoint->on_message(2, R"({"op":"getParameters","parameterNames":["a"]})", false);
+  say(R"({"op":"getParameters","parameterNames":["a"]})", 2);
   EXPECT_EQ(answer()["parameters"].size(), 1U);
   endpoint->on_close(2, "");
   connect(2, false);  // rights are a connection's, not a number's
@@ -45,18 +43,6 @@ TEST_F(Viewer, WithoutAnyRightOrRoomIsRefused) {
   EXPECT_EQ(endpoint->on_upgrade(request).status, 503);
 }
 
-/// The numbers of laps in messages to viewer 2, in order: lap n ended at n seconds.
-std::vector<double> laps_of(const std::vector<FakeServer::Sent>& messages) {
-  std::vector<double> times;
-  for (const FakeServer::Sent& message : messages) {
-    if (message.to != 2 || !message.binary || message.bytes->front() != 1) continue;
-    std::uint64_t time = 0;
-    std::memcpy(&time, message.bytes->data() + 5, sizeof(time));
-    times.push_back(1e-9 * static_cast<double>(time));
-  }
-  return times;
-}
-
 // After 256 laps no dashboard could connect: all were sent at once, and no more may wait for a connection.
 TEST_F(Viewer, GetsAThousandLapsInPages) {
   start({});
@@ -64,30 +50,29 @@ TEST_F(Viewer, GetsAThousandLapsInPages) {
     endpoint->publish(telemetry::CompletedLap{}, lap);
     server.pass_time();
   }
-  connect(2, false);
-  server.take();
-  endpoint->on_message(2, subscribe(4, "/chicane/lap"), false);
-  std::vector<double> got = laps_of(server.take());
+  join(2);
+  say(subscribe(4, "/chicane/lap"), 2);
+  std::vector<double> got = times_of(server.take(), 2, 4);
   EXPECT_EQ(got.size(), 192U);
   server.unread = 192;  // it reads nothing
   for (int i = 0; i < 10; ++i) server.pass_time();
-  EXPECT_TRUE(laps_of(server.take()).empty());
+  EXPECT_TRUE(times_of(server.take(), 2, 4).empty());
   server.unread = 190;  // it reads slowly
   server.pass_time();
-  for (const double lap : laps_of(server.take())) got.push_back(lap);
+  for (const double lap : times_of(server.take(), 2, 4)) got.push_back(lap);
   EXPECT_EQ(got.size(), 194U);
   server.unread = 0;
   endpoint->publish(telemetry::CompletedLap{},
                     1001.0);     // one comes meanwhile, and takes the first one's place
   for (int i = 0; i < 6; ++i) {  // a tenth of a second
     server.pass_time();
-    const std::vector<double> page = laps_of(server.take());
+    const std::vector<double> page = times_of(server.take(), 2, 4);
     EXPECT_LE(page.size(), 192U);
     got.insert(got.end(), page.begin(), page.end());
   }
   ASSERT_EQ(got.size(), 1001U);
   for (std::size_t i = 0; i < got.size(); ++i) ASSERT_DOUBLE_EQ(got[i], static_cast<double>(i + 1));
-  EXPECT_TRUE(laps_of(server.take()).empty());
+  EXPECT_TRUE(times_of(server.take(), 2, 4).empty());
 }
 
 }  // namespace

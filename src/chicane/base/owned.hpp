@@ -7,9 +7,15 @@
 
 namespace chicane {
 
+/// Copy of an object by its member function copy().
+template <class T>
+[[nodiscard]] auto copy_of(const T& owned) -> decltype(owned.copy()) {
+  return owned.copy();
+}
+
 /// Pointer like std::unique_ptr that can be copied: the copy owns a copy of the object, made by
-/// copy_of(const T&). Argument-dependent lookup finds that function, and it may return null. For classes that
-/// are copied as values and have members behind an interface.
+/// copy_of(const T&). Argument-dependent lookup finds that function for classes without copy(), and it may
+/// return null. For classes that are copied as values and have members behind an interface.
 template <class T>
 class Owned {
  public:

@@ -105,7 +105,11 @@ class ControllerList {
   /// Applies options to a controller of this list while it drives (Tunable); no effect on other controllers.
   static void configure(Controller& controller, const Options& options,
                         const model::VehicleParams& vehicle) noexcept {
-    (configure_as<Entries>(controller, options, vehicle), ...);
+    for_each([&]<class Entry>() {
+      using Own = typename Entry::Options;
+      if (auto* tunable = dynamic_cast<Tunable<Own>*>(&controller))
+        tunable->configure(std::get<Own>(options), vehicle);
+    });
   }
 
  private:
@@ -132,12 +136,6 @@ class ControllerList {
       return Entry::contradictions(std::get<typename Entry::Options>(options));
     else
       return {};
-  }
-  template <class Entry>
-  static void configure_as(Controller& controller, const Options& options,
-                           const model::VehicleParams& vehicle) noexcept {
-    if (auto* tunable = dynamic_cast<Tunable<typename Entry::Options>*>(&controller))
-      tunable->configure(std::get<typename Entry::Options>(options), vehicle);
   }
 };
 

@@ -24,8 +24,6 @@ class CubicSolver {
   /// Solver with the same options. There is no other state between solves.
   [[nodiscard]] virtual std::unique_ptr<CubicSolver> copy() const = 0;
 };
-/// Copy of a solver, for Owned.
-[[nodiscard]] inline std::unique_ptr<CubicSolver> copy_of(const CubicSolver& solver) { return solver.copy(); }
 
 /// Makes the solver for one instruction set; defined in cubic_solver.cpp, which is compiled for each.
 template <class Arch>

@@ -227,21 +227,17 @@ Result<void> LiveSettings::set_row(const protocol::Parameter& row, const Value& 
   }
   if (!protocol::is_live(row)) return start_anew(setting->change, std::move(changed));
   if (Result<void> valid = validated(changed); !valid) return valid;
-  return change_live(*setting, std::move(changed));
-}
 
-Result<void> LiveSettings::change_live(const run::Setting& setting, scenario::Scenario changed) {
-  const auto& field = std::get<run::FieldValue>(setting.action);
   scenario::Scenario now = scenario_;
-  run::write(now, field);
-  const bool is_other = protocol::get(now, *field.row) != protocol::get(scenario_, *field.row);
+  if (Result<void> valid = protocol::set(now, row, value); !valid) return valid;
+  const bool is_other = protocol::get(now, row) != protocol::get(scenario_, row);
   if (is_other && (!building_ || validated(now))) {
-    if (Result<void> sent = send(setting); !sent) return sent;
+    if (Result<void> sent = send(*setting); !sent) return sent;
     scenario_ = std::move(now);
   }
   if (building_) {
     building_->run.scenario = std::move(changed);
-    building_->later.insert_or_assign(std::string(field.row->key), setting);
+    building_->later.insert_or_assign(std::string(row.key), *setting);
   }
   has_news_ = true;
   if (options_.on_accepted) options_.on_accepted(scenario_);

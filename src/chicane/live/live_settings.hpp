@@ -126,11 +126,9 @@ class LiveSettings final : public protocol::foxglove::ParameterStore {
   [[nodiscard]] bool is_offered(const protocol::Parameter& row) const;
   /// Sets pace, manual driving or a fault.
   [[nodiscard]] Result<void> set_control(const protocol::Control& control, const protocol::Value& value);
-  /// Sets a setting of the schema.
+  /// Sets a setting of the schema: of the current run and of the one in construction, or by start_anew(). A
+  /// change that is valid in the latter only waits for it.
   [[nodiscard]] Result<void> set_row(const protocol::Parameter& row, const protocol::Value& value);
-  /// Changes the current run, and the one in construction to `changed`. A change that is valid in the latter
-  /// only waits for it.
-  [[nodiscard]] Result<void> change_live(const run::Setting& setting, scenario::Scenario changed);
   /// Begins to build another run by a choice that leads to `changed`.
   [[nodiscard]] Result<void> start_anew(telemetry::Change choice, scenario::Scenario changed);
   /// Accepts a name of the library, or the value at the start of the program, which may be a file.

@@ -10,7 +10,9 @@
 #include <utility>
 #include <variant>
 
+#include "chicane/base/duration.hpp"
 #include "chicane/base/math.hpp"
+#include "chicane/base/median.hpp"
 #include "chicane/live/live_settings.hpp"
 #include "chicane/live/pages.hpp"
 #include "chicane/live/run_limit.hpp"
@@ -33,9 +35,7 @@ double usual_period(const std::vector<Seen>& seen, std::size_t to, double otherw
   for (std::size_t i = to; i > 0 && periods.size() < kLooked; --i)
     periods.push_back(seen[i].time - seen[i - 1].time);
   if (periods.empty()) return otherwise;
-  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
-  std::nth_element(periods.begin(), middle, periods.end());
-  return std::clamp(*middle, kShortestPeriod, kLongestPeriod);
+  return std::clamp(median(std::move(periods)), kShortestPeriod, kLongestPeriod);
 }
 
 /// Position of the car at `time` [s], which lies within the run.
@@ -208,11 +208,10 @@ ServedRun::ServedRun(const net::ServerOptions& server, const scenario::Scenario&
   options_.scenario = scenario_;
   if (track_) options_.track = &*track_;
   options_.lap = std::move(lap);
-  options_.latency =
-      std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(scenario_.latency));
+  options_.latency = duration(scenario_.latency);
 }
 
-double ServedRun::step_budget() const { return std::chrono::duration<double>(options_.step_budget).count(); }
+double ServedRun::step_budget() const { return seconds(options_.step_budget); }
 
 Result<wire::ServeSummary> ServedRun::run(recording::Recorder* recorder, const LiveHooks& hooks,
                                           const std::function<void(std::uint16_t)>& on_listening,

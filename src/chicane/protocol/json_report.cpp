@@ -138,7 +138,8 @@ std::string row(std::string_view name, const LapSummary& lap) {
 }
 
 std::string times(const TimeSummary& time) {
-  return fmt::format("{:.1f} / {:.1f} / {:.1f} / {:.1f}", 1e6 * time.p50, 1e6 * time.p99, 1e6 * time.p999,
+  if (!std::isfinite(time.p50)) return "not measured";
+  return fmt::format("{:.1f} / {:.1f} / {:.1f} / {:.1f} µs", 1e6 * time.p50, 1e6 * time.p99, 1e6 * time.p999,
                      1e6 * time.max);
 }
 
@@ -359,16 +360,15 @@ std::string to_table(const RunSummary& run) {
   text +=
       fmt::format("\noff track          {} times, {:.2f} s\n", run.off_track_events, run.out_of_track_time);
   if (!run.guard) {  // another program drives, of which only the time of its answers is known
-    text += fmt::format("round trip         {} µs\n                   p50 / p99 / p99.9 / max, {} answers\n",
+    text += fmt::format("round trip         {}\n                   p50 / p99 / p99.9 / max, {} answers\n",
                         times(run.step_time), run.cycles);
     return text + outcome(run);
   }
   text +=
-      fmt::format("control step       {} µs\n                   p50 / p99 / p99.9 / max, {} steps, {} late\n",
+      fmt::format("control step       {}\n                   p50 / p99 / p99.9 / max, {} steps, {} late\n",
                   times(run.step_time), run.cycles, run.deadline_misses);
-  text +=
-      fmt::format("optimisation       {} µs\n                   {:.1f} iterations, {} without an answer\n",
-                  times(run.solve_time), run.mean_iterations, run.not_usable);
+  text += fmt::format("optimisation       {}\n                   {:.1f} iterations, {} without an answer\n",
+                      times(run.solve_time), run.mean_iterations, run.not_usable);
   text += fmt::format("safety             {} fallbacks, {} commands changed by the gate\n", run.fallbacks,
                       run.gate_interventions);
   text += learned_line(run.learned);

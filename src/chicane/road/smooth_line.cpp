@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "chicane/base/math.hpp"
+#include "chicane/base/median.hpp"
 #include "chicane/road/detail/point_text.hpp"
 
 namespace chicane::road {
@@ -254,25 +255,19 @@ std::size_t interval_count(double length, double spacing) noexcept {
   return static_cast<std::size_t>(std::clamp(std::round(length / spacing), 8.0, 1e9));
 }
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Distances between neighbouring points of a line of `length` [m].
 Gaps gaps_of(std::span<const Vec2> points, bool closed, double length) {
   std::vector<double> gaps;
   gaps.reserve(points.size());
   for (std::size_t i = 1; i < points.size(); ++i) gaps.push_back((points[i] - points[i - 1]).norm());
-  Gaps found{.median = median_of(gaps), .mean = length / static_cast<double>(points.size())};
+  Gaps found{.median = median(gaps), .mean = length / static_cast<double>(points.size())};
   if (closed) gaps.push_back((points.front() - points.back()).norm());
   const auto n = static_cast<std::ptrdiff_t>(gaps.size());
   for (std::ptrdiff_t i = 0; i < n; ++i) {
     std::vector<double> near;
     for (std::ptrdiff_t k = i - kNearGaps; k <= i + kNearGaps; ++k)
       if (closed || (k >= 0 && k < n)) near.push_back(gaps[static_cast<std::size_t>((k % n + n) % n)]);
-    const double usual = std::max(median_of(std::move(near)), 1e-9);
+    const double usual = std::max(median(std::move(near)), 1e-9);
     found.unevenness = std::max(found.unevenness, gaps[static_cast<std::size_t>(i)] / usual);
   }
   return found;

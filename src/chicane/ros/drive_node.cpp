@@ -13,6 +13,7 @@
 #include <string>
 #include <utility>
 
+#include "chicane/base/duration.hpp"
 #include "chicane/protocol/car_messages.hpp"
 #include "chicane/ros/car_topics.hpp"
 #include "chicane/ros/node_clock.hpp"
@@ -35,8 +36,6 @@ constexpr double kNewest = 0.1;    // weight of the newest value in smoothed mea
 constexpr double kLookPeriod = 0.5;       // [s] period of looking for partners
 constexpr double kStanding = 0.1;         // [m/s] speed below which a car in full size stands
 constexpr milliseconds kLongestWait{50};  // longest wait for a message
-
-double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 
 /// Controller's node, on the thread that calls run().
 class DriveNode {

@@ -14,6 +14,7 @@
 #include <variant>
 #include <vector>
 
+#include "chicane/base/duration.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/protocol/car_messages.hpp"
 #include "chicane/protocol/occupancy_map.hpp"
@@ -50,11 +51,6 @@ constexpr double kScannerAhead = 0.275 / 0.307;
 constexpr double kLookPeriod = 0.5;  // [s] period of looking for partners; chosen
 constexpr double kRangeMin = 0.02;   // [m] least range of the laser, by its data sheet
 constexpr double kRounding = 1e-9;   // [s] rounding of times
-
-double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
-Clock::duration duration(double seconds) {
-  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-}
 
 std::vector<WantedPartner> partners_of_simulator(const NodeOptions& node) {
   return {{true,

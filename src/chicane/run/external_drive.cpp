@@ -7,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+#include "chicane/base/duration.hpp"
 #include "chicane/run/roads.hpp"
 
 namespace chicane::run {
@@ -16,10 +17,6 @@ namespace {
 constexpr double kFirstInterval = 0.42;
 // Delays that a gap may last beyond ExternalDriveOptions::forget_after; chosen.
 constexpr double kGapInDelays = 2.0;
-
-double seconds(ExternalDrive::Clock::duration duration) {
-  return std::chrono::duration<double>(duration).count();
-}
 
 /// Measurement of a cycle in which nothing was measured: not-a-number everywhere.
 model::Measurement nothing_measured() {

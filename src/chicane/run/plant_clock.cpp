@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include <fmt/format.h>
 
+#include "chicane/base/duration.hpp"
 #include "chicane/base/math.hpp"
+#include "chicane/base/median.hpp"
 
 namespace chicane::run {
 namespace {
@@ -85,10 +88,6 @@ constexpr double kSampledLeft = 0.95;  // decay of the time counted for the age 
 constexpr double kOtherClock = 0.5;    // logarithm of a leg's ratio to the median, above which it is left out
 constexpr double kSame = 0.03;         // logarithm of a ratio that counts as 1
 
-double in_seconds(PlantClock::Clock::duration duration) {
-  return std::chrono::duration<double>(duration).count();
-}
-
 }  // namespace
 
 PlantClock::PlantClock(const PlantClockOptions& options, const model::VehicleParams& vehicle,
@@ -115,13 +114,13 @@ void PlantClock::forget() {
 }
 
 double PlantClock::at(Clock::time_point wall) const {
-  const double since = ratio_ * in_seconds(wall - wall_);
+  const double since = ratio_ * seconds(wall - wall_);
   return time_ + (step_ > 0.0 ? std::clamp(since, 0.0, step_) : since);
 }
 
 bool PlantClock::advance(Clock::time_point received, const model::Measurement* measured,
                          const model::Command& acting) {
-  const double wall = in_seconds(received - wall_);
+  const double wall = seconds(received - wall_);
   const bool is_first = !has_last_;
   wall_ = received;
   if (options_.is_measured) return follow(measured);
@@ -227,11 +226,10 @@ PlantClock::Fit PlantClock::fit(const Base& base) const {
   const auto value_of = [&](std::size_t i) { return log(leg(i).plant / base(leg(i))); };
   std::array<double, kLegs> values{};
   for (std::size_t i = 0; i < size; ++i) values[i] = value_of(i);
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(size / 2);
-  std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(size));
+  const double usual = median(std::span(values).first(size));
   Fit fit;
   double counted = 0.0, sum = 0.0, mean = 0.0, square = 0.0;
-  const auto is_near = [&](std::size_t i) { return std::fabs(value_of(i) - *middle) < kOtherClock; };
+  const auto is_near = [&](std::size_t i) { return std::fabs(value_of(i) - usual) < kOtherClock; };
   for (std::size_t i = 0; i < size; ++i) {
     fit.all += leg(i).plant;
     fit.all_counted += base(leg(i));

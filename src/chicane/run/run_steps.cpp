@@ -6,6 +6,8 @@
 #include <chrono>
 #include <thread>
 
+#include "chicane/base/duration.hpp"
+
 namespace chicane::run {
 
 bool RunSteps::advance(double budget) {
@@ -75,10 +77,6 @@ constexpr double kBlock = 0.004;    // [s] run time between two looks at the clo
 constexpr double kMaxBehind = 0.1;  // [s] lateness beyond which missed time is skipped
 constexpr auto kPausePoll = std::chrono::milliseconds(10);  // period of looking for requests while paused
 
-Clock::duration clock_time(double seconds) {
-  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-}
-
 /// Pace of a run: maps run time to the clock from an anchor on, which moves when the run pauses or is late.
 class Pacer {
  public:
@@ -92,8 +90,8 @@ class Pacer {
     if (pace != pace_) anchor(last_run_);
     pace_ = pace;
     last_run_ = run_time;
-    const auto due = anchor_time_ + clock_time((run_time - anchor_run_) / pace_);
-    if (Clock::now() > due + clock_time(kMaxBehind)) {
+    const auto due = anchor_time_ + duration((run_time - anchor_run_) / pace_);
+    if (Clock::now() > due + duration(kMaxBehind)) {
       anchor(run_time);
     } else {
       std::this_thread::sleep_until(due);
@@ -161,7 +159,7 @@ class Session {
 /// Summary of a run that began at `start`.
 telemetry::RunSummary summary_since(Clock::time_point start, const ClosedLoop& loop) {
   telemetry::RunSummary run = loop.summary();
-  run.wall_time = std::chrono::duration<double>(Clock::now() - start).count();
+  run.wall_time = seconds(Clock::now() - start);
   return run;
 }
 

@@ -62,7 +62,4 @@ class Plant {
   [[nodiscard]] virtual std::unique_ptr<Plant> copy() const { return nullptr; }
 };
 
-/// Copy for Owned<Plant>.
-[[nodiscard]] inline std::unique_ptr<Plant> copy_of(const Plant& plant) { return plant.copy(); }
-
 }  // namespace chicane::sim

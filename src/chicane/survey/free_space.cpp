@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "chicane/base/math.hpp"
+#include "chicane/base/median.hpp"
 #include "chicane/survey/image.hpp"
 #include "chicane/survey/sampled_line.hpp"
 
@@ -307,7 +308,7 @@ class LoopFinder {
   [[nodiscard]] std::vector<Vec2> moved_to_the_middle(std::vector<Vec2> line) const {
     std::vector<double> room;
     for (const Vec2& point : line) room.push_back(room_at(point));
-    const double half_width = std::max(2.0, median(room));
+    const double half_width = std::max(2.0, median(std::move(room)));
     const double spacing = std::clamp(0.3 * half_width, 1.5, 200.0);
     line = sampled(line, true, spacing);
     for (int round = 0; round < kRounds; ++round) {
@@ -382,7 +383,7 @@ class LoopFinder {
       loop.points.push_back({space_.to_world(join_ * line[i]), to_left[i] * cell_, to_right[i] * cell_});
       widths.push_back((to_left[i] + to_right[i]) * cell_);
     }
-    loop.median_width = median(widths);
+    loop.median_width = median(std::move(widths));
     return loop;
   }
 

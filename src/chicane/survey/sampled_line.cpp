@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "chicane/base/math.hpp"
+#include "chicane/base/median.hpp"
 #include "chicane/survey/image.hpp"
 
 namespace chicane::survey {
@@ -57,12 +58,6 @@ double signed_area(std::span<const Vec2> line) noexcept {
     doubled += a.x() * b.y() - a.y() * b.x();
   }
   return 0.5 * doubled;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 namespace {
@@ -302,7 +297,7 @@ void add_gaps(const std::vector<Vec2>& cones, bool is_closed, bool is_left, std:
       if (is_closed || i + k < count) near.push_back(steps[(i + k) % count]);
       if (is_closed || i >= k) near.push_back(steps[(i + count - k) % count]);
     }
-    if (!near.empty() && steps[i] > kGap * median(near))
+    if (!near.empty() && steps[i] > kGap * median(std::move(near)))
       gaps.push_back({is_left, 0.5 * (cones[i] + cones[(i + 1) % cones.size()]), steps[i]});
   }
 }

@@ -23,9 +23,6 @@ namespace chicane::survey {
 /// Area within a closed line [m²]; positive for a counter-clockwise line.
 [[nodiscard]] double signed_area(std::span<const Vec2> line) noexcept;
 
-/// Median; of an even number of values the upper one of the middle two. Pre: at least one value.
-[[nodiscard]] double median(std::vector<double> values);
-
 /// Place on the earth in the system WGS 84 [deg].
 struct Geographic {
   double latitude = 0.0, longitude = 0.0;

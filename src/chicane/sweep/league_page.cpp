@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 
+#include "chicane/base/median.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/json.hpp"
 #include "chicane/sweep/result_table.hpp"
@@ -185,22 +186,21 @@ class LeagueTables {
             "the median over all runs.",
         .table = ResultTable({"entry", "what{>}", "median [µs]{>.0}", "99 % [µs]{>.0}", "runs{>}"})};
     for (const std::string& entry : entries_) {
-      std::vector<double> median, late;
+      std::vector<double> middle, late;
       bool is_external = false;
       for (const LeagueCell& cell : results_.cells) {
         if (cell.entry != entry) continue;
         is_external = cell.is_external;
         const std::string name = cell.is_external ? "answer_time_us" : "solve_time_us";
-        if (!std::isfinite(cell.number(name + ".p50"))) continue;
-        median.push_back(cell.number(name + ".p50"));
-        late.push_back(cell.number(name + ".p99"));
+        const double p50 = cell.number(name + ".p50"), p99 = cell.number(name + ".p99");
+        if (!std::isfinite(p50 + p99)) continue;
+        middle.push_back(p50);
+        late.push_back(p99);
       }
-      const auto middle = [](std::vector<double>& values) {
-        if (values.empty()) return std::nan("");
-        std::sort(values.begin(), values.end());
-        return values[values.size() / 2];
+      const auto usual = [](const std::vector<double>& values) {
+        return values.empty() ? Json("not measured") : Json(median(values));
       };
-      table.table.add({entry, is_external ? "answer" : "solve", middle(median), middle(late), median.size()});
+      table.table.add({entry, is_external ? "answer" : "solve", usual(middle), usual(late), middle.size()});
     }
     return table;
   }

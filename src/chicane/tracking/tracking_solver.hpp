@@ -28,10 +28,6 @@ class TrackingSolver {
   /// Another solver with the same options. It solves alike: nothing is remembered from solve to solve.
   [[nodiscard]] virtual std::unique_ptr<TrackingSolver> copy() const = 0;
 };
-/// Copy for Owned<TrackingSolver>.
-[[nodiscard]] inline std::unique_ptr<TrackingSolver> copy_of(const TrackingSolver& solver) {
-  return solver.copy();
-}
 
 /// Makes a solver for the instruction set `Arch`. Defined in tracking_solver.cpp, which is compiled for each.
 template <class Arch>

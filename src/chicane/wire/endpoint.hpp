@@ -11,11 +11,13 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "chicane/base/median.hpp"
 #include "chicane/net/http_response.hpp"
 #include "chicane/net/server.hpp"
 
@@ -104,10 +106,7 @@ class RecentMedian {
   [[nodiscard]] double value(double otherwise) const noexcept {
     if (count_ == 0) return otherwise;
     std::array<double, kCount> sorted = values_;
-    const auto end = sorted.begin() + static_cast<std::ptrdiff_t>(std::min(count_, sorted.size()));
-    const auto middle = sorted.begin() + (end - sorted.begin()) / 2;
-    std::nth_element(sorted.begin(), middle, end);
-    return *middle;
+    return median(std::span(sorted).first(std::min(count_, sorted.size())));
   }
 
  private:

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "chicane/base/duration.hpp"
 #include "chicane/protocol/schema.hpp"
 
 namespace chicane::wire {
@@ -27,8 +28,6 @@ constexpr milliseconds kWatchPeriod{250};    // period of looking for silence; c
 constexpr std::chrono::seconds kPingInterval{25};  // Engine.IO's default
 constexpr const char* kOpenPacket =
     R"(0{"sid":"chicane","upgrades":[],"pingInterval":25000,"pingTimeout":60000,"maxPayload":65536})";
-
-double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 
 /// Message of a simulator that needs an answer.
 struct Request {

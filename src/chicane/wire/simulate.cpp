@@ -15,6 +15,7 @@
 #include <thread>
 #include <variant>
 
+#include "chicane/base/duration.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/net/client.hpp"
 #include "chicane/run/simulated_car.hpp"
@@ -65,11 +66,6 @@ using std::chrono::milliseconds;
 // Chosen.
 constexpr milliseconds kConnectTimeout{1000};  // longest attempt to connect
 constexpr milliseconds kConnectPoll{5};        // period of looking whether an attempt has ended
-
-Clock::duration duration(double seconds) {
-  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-}
-double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 
 /// Address of a controller with the request for stop plans.
 std::string with_stop_plan(const std::string& url) {

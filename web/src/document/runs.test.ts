@@ -1,4 +1,4 @@
-import { describe, expect, it } from 'vitest';
+import { expect, it } from 'vitest';
 import { headlineOf } from '../state/comparison';
 import { compareIn, coursesOf, firstPair, leadOf, type RunsDocument, readRuns, verdictOf } from './runs';
 
@@ -45,45 +45,43 @@ function documentOf(name: string, speeds: readonly number[], more: object = {}):
   };
 }
 
-describe('the report of recordings', () => {
-  it('says what was driven, and what was unusual', () => {
-    const [run] = readRuns({ kind: 'runs', logs: [documentOf('a.mcap', [10, 16, 15])] });
-    if (!run) throw new Error('no run');
-    expect(verdictOf(run)).toEqual({ text: 'Three clean laps of ring. The best took ', time: '0:25.000', behind: '' });
-    expect(leadOf(run)).toBe(
-      'The udacity by default, 100 ms late. No tyre left the road; the nearest was 1.05 m from the edge. ' +
-        'Faults: blind at 40.1 s. Changed: latency_ms = 60 at 3.5 s.',
-    );
-    expect(run.samples.laps).toEqual([0, 1, 2]);
-  });
+it('says what was driven, and what was unusual', () => {
+  const [run] = readRuns({ kind: 'runs', logs: [documentOf('a.mcap', [10, 16, 15])] });
+  if (!run) throw new Error('no run');
+  expect(verdictOf(run)).toEqual({ text: 'Three clean laps of ring. The best took ', time: '0:25.000', behind: '' });
+  expect(leadOf(run)).toBe(
+    'The udacity by default, 100 ms late. No tyre left the road; the nearest was 1.05 m from the edge. ' +
+      'Faults: blind at 40.1 s. Changed: latency_ms = 60 at 3.5 s.',
+  );
+  expect(run.samples.laps).toEqual([0, 1, 2]);
+});
 
-  it('compares the best lap with the limit, of the same rounding', () => {
-    const places = Array.from({ length: 101 }, (_, i) => i * 4);
-    const columns = { s_m: places, time_s: places.map((s) => s / 20), speed_mps: places.map(() => 20) };
-    const limit = { is_known: [1], lap_time_s: [20], first_lap: [1], ...columns };
-    const runs = readRuns({ kind: 'runs', logs: [documentOf('a.mcap', [10, 16, 15], { limit })] });
-    const [run] = runs;
-    const courses = coursesOf(runs);
-    expect(courses.map(({ id }) => id)).toEqual(['lap 1', 'lap 2', 'lap 3', 'limit']);
-    const pair = firstPair(runs, courses);
-    const both = run && pair && compareIn(run, ...pair);
-    if (!run || !both) throw new Error('nothing to compare');
-    expect(verdictOf(run).behind).toBe('5.00 s');
-    expect([both.a.id, headlineOf(both).amount, both.b.id]).toEqual(['lap 2', '5.00 s', 'limit']);
-  });
+it('compares the best lap with the limit, of the same rounding', () => {
+  const places = Array.from({ length: 101 }, (_, i) => i * 4);
+  const columns = { s_m: places, time_s: places.map((s) => s / 20), speed_mps: places.map(() => 20) };
+  const limit = { is_known: [1], lap_time_s: [20], first_lap: [1], ...columns };
+  const runs = readRuns({ kind: 'runs', logs: [documentOf('a.mcap', [10, 16, 15], { limit })] });
+  const [run] = runs;
+  const courses = coursesOf(runs);
+  expect(courses.map(({ id }) => id)).toEqual(['lap 1', 'lap 2', 'lap 3', 'limit']);
+  const pair = firstPair(runs, courses);
+  const both = run && pair && compareIn(run, ...pair);
+  if (!run || !both) throw new Error('nothing to compare');
+  expect(verdictOf(run).behind).toBe('5.00 s');
+  expect([both.a.id, headlineOf(both).amount, both.b.id]).toEqual(['lap 2', '5.00 s', 'limit']);
+});
 
-  it('compares the best laps of two recordings of one road', () => {
-    const runs = readRuns({ kind: 'runs', logs: [documentOf('a.mcap', [10, 16]), documentOf('b.mcap', [10, 20])] });
-    const courses = coursesOf(runs);
-    const pair = firstPair(runs, courses);
-    const both = runs[0] && pair && compareIn(runs[0], ...pair);
-    expect(both && [both.a.id, headlineOf(both).amount, both.b.id]).toEqual(['lap 2', '5.00 s', 'lap 2 of b.mcap']);
-  });
+it('compares the best laps of two recordings of one road', () => {
+  const runs = readRuns({ kind: 'runs', logs: [documentOf('a.mcap', [10, 16]), documentOf('b.mcap', [10, 20])] });
+  const courses = coursesOf(runs);
+  const pair = firstPair(runs, courses);
+  const both = runs[0] && pair && compareIn(runs[0], ...pair);
+  expect(both && [both.a.id, headlineOf(both).amount, both.b.id]).toEqual(['lap 2', '5.00 s', 'lap 2 of b.mcap']);
+});
 
-  it('is one of runs that say nothing', () => {
-    const empty = { run: null, limit: null, laps: [], changes: [], centre: null, frames: {} };
-    const [run] = readRuns({ kind: 'runs', logs: [{ name: 'a.mcap', settings: '', runs: [empty] }] });
-    expect(run && verdictOf(run).text).toMatch(/^No lap of/);
-    expect(run && firstPair([run], coursesOf([run]))).toBeNull();
-  });
+it('is one of runs that say nothing', () => {
+  const empty = { run: null, limit: null, laps: [], changes: [], centre: null, frames: {} };
+  const [run] = readRuns({ kind: 'runs', logs: [{ name: 'a.mcap', settings: '', runs: [empty] }] });
+  expect(run && verdictOf(run).text).toMatch(/^No lap of/);
+  expect(run && firstPair([run], coursesOf([run]))).toBeNull();
 });

@@ -1,41 +1,25 @@
-import { describe, expect, it } from 'vitest';
+import { expect, it } from 'vitest';
 import { duration, fixed, lapTime, plural, side, UNKNOWN } from './format';
 
-describe('format', () => {
-  it('writes numbers without a negative zero', () => {
-    expect(fixed(-0.004, 2)).toBe('0.00');
-    expect(fixed(-1.256, 2)).toBe('−1.26');
-    expect(fixed(NaN, 2)).toBe(UNKNOWN);
-    expect(fixed(Infinity, 0)).toBe(UNKNOWN);
-  });
+it('writes numbers without a negative zero', () => {
+  expect([-0.004, -1.256, NaN, Infinity].map((value) => fixed(value, 2))).toEqual(['0.00', '−1.26', UNKNOWN, UNKNOWN]);
+});
 
-  it('writes lap times in minutes and seconds, rounded', () => {
-    expect(lapTime(0)).toBe('0:00.00');
-    expect(lapTime(83.4567)).toBe('1:23.46');
-    expect(lapTime(59.999)).toBe('1:00.00');
-    expect(lapTime(34.6516, 3)).toBe('0:34.652'); // as the program prints it
-    expect(lapTime(61.204, 3)).toBe('1:01.204');
-    expect(lapTime(28.13)).toBe('0:28.13');
-    expect(lapTime(-1)).toBe(UNKNOWN);
-    expect(lapTime(NaN)).toBe(UNKNOWN);
-  });
+it('writes lap times in minutes and seconds, rounded', () => {
+  const texts = [0, 83.4567, 59.999, 28.13, -1, NaN].map((time) => lapTime(time));
+  expect(texts).toEqual(['0:00.00', '1:23.46', '1:00.00', '0:28.13', UNKNOWN, UNKNOWN]);
+  expect([34.6516, 61.204].map((time) => lapTime(time, 3))).toEqual(['0:34.652', '1:01.204']); // as of the program
+});
 
-  it('names the side of an offset', () => {
-    expect(side(0.4)).toBe('left');
-    expect(side(-0.4)).toBe('right');
-    expect(side(0.001)).toBe('');
-    expect(side(NaN)).toBe('');
-  });
+it('names the side of an offset', () => {
+  expect([0.4, -0.4, 0.001, NaN].map(side)).toEqual(['left', 'right', '', '']);
+});
 
-  it('picks the unit of a duration', () => {
-    expect(duration(456)).toEqual({ value: '456', unit: 'µs' });
-    expect(duration(1234)).toEqual({ value: '1.23', unit: 'ms' });
-    expect(duration(45_678)).toEqual({ value: '45.7', unit: 'ms' });
-    expect(duration(NaN).value).toBe(UNKNOWN);
-  });
+it('picks the unit of a duration', () => {
+  const texts = [456, 1234, 45_678].map(duration).map(({ value, unit }) => `${value} ${unit}`);
+  expect([...texts, duration(NaN).value]).toEqual(['456 µs', '1.23 ms', '45.7 ms', UNKNOWN]);
+});
 
-  it('counts in words', () => {
-    expect(plural(1, 'lap')).toBe('1 lap');
-    expect(plural(0, 'lap')).toBe('0 laps');
-  });
+it('counts in words', () => {
+  expect([1, 0].map((count) => plural(count, 'lap'))).toEqual(['1 lap', '0 laps']);
 });

@@ -1,6 +1,6 @@
 import { parse } from '@foxglove/rosmsg';
 import { MessageReader } from '@foxglove/rosmsg2-serialization';
-import { describe, expect, it } from 'vitest';
+import { expect, it } from 'vitest';
 import { decoder } from './decoder';
 import { bytesOf, FOLDER, topics } from './test_fixtures';
 import { TOPIC_NAMES } from './topics';
@@ -14,22 +14,20 @@ function readable(message: unknown): string {
   return `${JSON.stringify(message, plain, 1)}\n`;
 }
 
-describe('messages of the C++ side', () => {
-  it('include every topic this page subscribes to', () => {
-    // The past has the type of a frame, and a channel of viewers alone (wire/viewer.hpp).
-    const sent = TOPIC_NAMES.filter((name) => name !== '/chicane/past');
-    for (const name of sent) expect(topics.map((each) => each.topic)).toContain(name);
-  });
+it('include every topic this page subscribes to', () => {
+  // The past has the type of a frame, and a channel of viewers alone (wire/viewer.hpp).
+  const sent = TOPIC_NAMES.filter((name) => name !== '/chicane/past');
+  for (const name of sent) expect(topics.map((each) => each.topic)).toContain(name);
+});
 
-  it.each(topics)('$topic is read as the reference implementation reads it', ({ schema, file }) => {
-    const bytes = bytesOf(file);
-    const reference = new MessageReader(parse(schema, { ros2: true }));
-    expect(decoder(schema)(bytes)).toEqual(reference.readMessage(bytes));
-  });
+it.each(topics)('$topic is read as the reference implementation reads it', ({ schema, file }) => {
+  const bytes = bytesOf(file);
+  const reference = new MessageReader(parse(schema, { ros2: true }));
+  expect(decoder(schema)(bytes)).toEqual(reference.readMessage(bytes));
+});
 
-  // Beside the bytes, for people and for other decoders; renewed with them, and to be read before it is kept.
-  it.each(topics)('$topic carries the values that stand beside its bytes', async ({ schema, file }) => {
-    const message = decoder(schema)(bytesOf(file));
-    await expect(readable(message)).toMatchFileSnapshot(new URL(file.replace(/bin$/, 'json'), FOLDER).pathname);
-  });
+// Beside the bytes, for people and for other decoders; renewed with them, and to be read before it is kept.
+it.each(topics)('$topic carries the values that stand beside its bytes', async ({ schema, file }) => {
+  const message = decoder(schema)(bytesOf(file));
+  await expect(readable(message)).toMatchFileSnapshot(new URL(file.replace(/bin$/, 'json'), FOLDER).pathname);
 });

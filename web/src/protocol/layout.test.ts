@@ -1,6 +1,6 @@
 import { readFileSync } from 'node:fs';
 import { parse } from '@foxglove/rosmsg';
-import { describe, expect, it } from 'vitest';
+import { expect, it } from 'vitest';
 import { topics } from './test_fixtures';
 
 const layout = JSON.parse(readFileSync(new URL('../../../data/layouts/foxglove.json', import.meta.url), 'utf8')) as {
@@ -14,29 +14,27 @@ const fieldsOf = (topic: string): string[] => {
   return parse(schema, { ros2: true })[0]?.definitions.map(({ name }) => name) ?? [];
 };
 
-describe('the layout for Foxglove and Lichtblick', () => {
-  const panels = Object.values(layout.configById);
+const panels = Object.values(layout.configById);
 
-  it('plots fields that exist', () => {
-    const paths = panels.flatMap((panel) => panel.paths ?? []).map(({ value }) => value.split('.') as [string, string]);
-    expect(paths.length).toBeGreaterThan(0);
-    for (const [topic, field] of paths) expect(fieldsOf(topic)).toContain(field);
-  });
+it('plots fields that exist', () => {
+  const paths = panels.flatMap((panel) => panel.paths ?? []).map(({ value }) => value.split('.') as [string, string]);
+  expect(paths.length).toBeGreaterThan(0);
+  for (const [topic, field] of paths) expect(fieldsOf(topic)).toContain(field);
+});
 
-  it('draws topics that exist', () => {
-    const drawn = panels.flatMap((panel) => [
-      ...Object.keys(panel.topics ?? {}),
-      ...(panel.topicToRender ? [panel.topicToRender] : []),
-    ]);
-    expect(drawn.length).toBeGreaterThan(4);
-    for (const topic of drawn) expect(fieldsOf(topic).length).toBeGreaterThan(0);
-  });
+it('draws topics that exist', () => {
+  const drawn = panels.flatMap((panel) => [
+    ...Object.keys(panel.topics ?? {}),
+    ...(panel.topicToRender ? [panel.topicToRender] : []),
+  ]);
+  expect(drawn.length).toBeGreaterThan(4);
+  for (const topic of drawn) expect(fieldsOf(topic).length).toBeGreaterThan(0);
+});
 
-  it('shows each of its panels once', () => {
-    const shown =
-      JSON.stringify(layout.layout)
-        .match(/"[A-Za-z0-9]+![a-z]+"/g)
-        ?.map((name) => name.slice(1, -1)) ?? [];
-    expect(shown.sort()).toEqual(Object.keys(layout.configById).sort());
-  });
+it('shows each of its panels once', () => {
+  const shown =
+    JSON.stringify(layout.layout)
+      .match(/"[A-Za-z0-9]+![a-z]+"/g)
+      ?.map((name) => name.slice(1, -1)) ?? [];
+  expect(shown.sort()).toEqual(Object.keys(layout.configById).sort());
 });

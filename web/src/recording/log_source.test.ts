@@ -17,11 +17,7 @@ const RUN = 'string track\nbool is_paused\nstring[] fault_names\n';
 const HOUR_NS = 3_600_000_000_000n; // log times need not begin at zero
 
 describe('the runs of a recording', () => {
-  const message = (topic: TopicName, time: number, content: object = {}) => ({
-    topic,
-    time,
-    message: content as never,
-  });
+  const message = (topic: TopicName, time: number, content = {}) => ({ topic, time, message: content as never });
   const lap = (number: number, time: number) => message('/chicane/lap', time, { lap: number, lap_time_s: 3 });
 
   it('begin where another one is reported, and where laps are counted again', () => {
@@ -131,10 +127,14 @@ describe('a recording', () => {
   });
 });
 
+async function opened() {
+  const page = new Page();
+  return { page, source: await LogSource.open(log, page) };
+}
+
 describe('playing a recording', () => {
   it('sends the minute before the time sought, and every lap', async () => {
-    const page = new Page();
-    const source = await LogSource.open(log, page);
+    const { page, source } = await opened();
     await source.seek(5.04);
     expect(page.rewinds).toBe(1);
     expect(page.frames().at(0)).toBe(0);
@@ -144,16 +144,12 @@ describe('playing a recording', () => {
     // The pace of playing, not of the recorded run; and all laps, including later ones.
     expect(page.received.find(({ topic }) => topic === '/chicane/frame')?.message).toMatchObject({ pace: 1 });
     expect(page.received.filter(({ topic }) => topic === '/chicane/lap')).toHaveLength(1);
-    expect(page.received.find(({ topic }) => topic === '/chicane/run')?.message).toMatchObject({
-      track: 'straight',
-      mode: 'replay',
-      is_paused: true,
-    });
+    const run = { track: 'straight', mode: 'replay', is_paused: true };
+    expect(page.received.find(({ topic }) => topic === '/chicane/run')?.message).toMatchObject(run);
   });
 
   it('plays at its pace, in order, each message once, to the end', async () => {
-    const page = new Page();
-    const source = await LogSource.open(log, page);
+    const { page, source } = await opened();
     await source.seek(0);
     expect(await source.set('run.pace', 2)).toEqual({ value: 2, sentence: null });
     await source.call('/pause', false);
@@ -178,8 +174,7 @@ describe('playing a recording', () => {
   });
 
   it('steps from one control step to the next', async () => {
-    const page = new Page();
-    const source = await LogSource.open(log, page);
+    const { page, source } = await opened();
     await source.seek(6.95);
     expect(await source.call('/step')).toBeNull();
     expect(page.frames().at(-1)).toBe(7);
@@ -189,15 +184,14 @@ describe('playing a recording', () => {
   });
 
   it('drops the result of a jump when another one follows', async () => {
-    const page = new Page();
-    const source = await LogSource.open(log, page);
+    const { page, source } = await opened();
     await Promise.all([source.seek(9), source.seek(1)]);
     expect(page.rewinds).toBe(1);
     expect(page.frames().at(-1)).toBe(1);
   });
 
   it('refuses to change what was recorded, and an impossible pace', async () => {
-    const source = await LogSource.open(log, new Page());
+    const { source } = await opened();
     expect((await source.set('latency_ms', 50)).sentence).toMatch('belongs to the recording');
     expect(await source.set('run.pace', 100)).toEqual({ value: 1, sentence: 'run.pace: got 100, expected 0.05 to 20' });
   });

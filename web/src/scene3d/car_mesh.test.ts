@@ -10,12 +10,8 @@ const sizeOf = (front: number, rear: number, track: number, tyre: number, length
 const SIZE = sizeOf(1.25, 1.45, 1.6, 0.205, 4.3, 1.8);
 const model = carModel(SIZE);
 
-function corners({ positions }: MeshData): number[][] {
-  const all: number[][] = [];
-  for (let i = 0; i < positions.length; i += 3)
-    all.push([positions[i] ?? NaN, positions[i + 1] ?? NaN, positions[i + 2] ?? NaN]);
-  return all;
-}
+const corners = ({ positions }: MeshData): number[][] =>
+  Array.from({ length: positions.length / 3 }, (_, i) => [...positions.slice(3 * i, 3 * i + 3)]);
 
 /** Volume inside a closed skin by the divergence theorem: positive when its triangles face outwards. */
 function volume({ positions }: MeshData): number {

@@ -1,4 +1,4 @@
-import { describe, expect, it, vi } from 'vitest';
+import { expect, it, vi } from 'vitest';
 import { UNKNOWN_LIMIT } from '../protocol/messages';
 import { frameWith, lapWith, runWith } from './test_messages';
 
@@ -30,26 +30,24 @@ function drive(page: Page, count: number): void {
   }
 }
 
-describe('what is compared', () => {
-  it('is the newest lap, with the limit where it holds, else with the best', async () => {
-    const page = await freshPage();
-    drive(page, 3);
-    await vi.waitFor(() => expect(page.pair.value.map((each) => each?.id)).toEqual(['lap 3', 'lap 2']));
-    const limit = { ...UNKNOWN_LIMIT, is_known: true, lap_time_s: 30, first_lap: 2 };
-    const road = { s_m: Float64Array.of(0, 200, 400), speed_mps: Float64Array.of(13, 13, 13) };
-    page.receive('/chicane/limit', { ...limit, ...road, time_s: Float64Array.of(0, 15, 30) }, 0);
-    expect(page.pair.value.map((each) => each?.id)).toEqual(['lap 3', 'limit']);
-    expect(page.comparison.value?.total).toBeCloseTo(LAP_S + 3e-3 - 30);
-    page.chosen.value = ['lap 1', null]; // the grip was another then
-    expect(page.pair.value[1]?.id).toBe('lap 2');
-  });
+it('is the newest lap, with the limit where it holds, else with the best', async () => {
+  const page = await freshPage();
+  drive(page, 3);
+  await vi.waitFor(() => expect(page.pair.value.map((each) => each?.id)).toEqual(['lap 3', 'lap 2']));
+  const limit = { ...UNKNOWN_LIMIT, is_known: true, lap_time_s: 30, first_lap: 2 };
+  const road = { s_m: Float64Array.of(0, 200, 400), speed_mps: Float64Array.of(13, 13, 13) };
+  page.receive('/chicane/limit', { ...limit, ...road, time_s: Float64Array.of(0, 15, 30) }, 0);
+  expect(page.pair.value.map((each) => each?.id)).toEqual(['lap 3', 'limit']);
+  expect(page.comparison.value?.total).toBeCloseTo(LAP_S + 3e-3 - 30);
+  page.chosen.value = ['lap 1', null]; // the grip was another then
+  expect(page.pair.value[1]?.id).toBe('lap 2');
+});
 
-  it('is offered only where the page has its course', async () => {
-    const page = await freshPage();
-    drive(page, page.KEPT_LAPS + 6);
-    page.chosen.value = ['lap 3', null]; // forgotten
-    await vi.waitFor(() => expect(page.pair.value[0]?.id).toBe(`lap ${page.KEPT_LAPS + 6}`));
-    expect(page.courses.value.map(({ id }) => id)).not.toContain('lap 3');
-    expect(page.comparison.value).not.toBeNull();
-  });
+it('is offered only where the page has its course', async () => {
+  const page = await freshPage();
+  drive(page, page.KEPT_LAPS + 6);
+  page.chosen.value = ['lap 3', null]; // forgotten
+  await vi.waitFor(() => expect(page.pair.value[0]?.id).toBe(`lap ${page.KEPT_LAPS + 6}`));
+  expect(page.courses.value.map(({ id }) => id)).not.toContain('lap 3');
+  expect(page.comparison.value).not.toBeNull();
 });

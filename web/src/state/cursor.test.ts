@@ -1,4 +1,4 @@
-import { beforeEach, describe, expect, it } from 'vitest';
+import { beforeEach, expect, it } from 'vitest';
 import { store } from '../lib/store';
 import { UNKNOWN_FRAME } from '../protocol/messages';
 import { cursorMark, pointAt, timeNear } from './cursor';
@@ -14,29 +14,27 @@ function drive(): void {
   }
 }
 
-describe('the cursor', () => {
-  beforeEach(() => {
-    store.reset('moment');
-    thaw();
-    cursorTime.value = null;
-    drive();
-  });
+beforeEach(() => {
+  store.reset('moment');
+  thaw();
+  cursorTime.value = null;
+  drive();
+});
 
-  it('stands where the car was at its time', () => {
-    expect(cursorMark()).toBeNull();
-    cursorTime.value = 10;
-    expect(cursorMark()?.x).toBeCloseTo(0, 6);
-    expect(cursorMark()?.y).toBeCloseTo(100, 6);
-  });
+it('stands where the car was at its time', () => {
+  expect(cursorMark()).toBeNull();
+  cursorTime.value = 10;
+  expect(cursorMark()?.x).toBeCloseTo(0, 6);
+  expect(cursorMark()?.y).toBeCloseTo(100, 6);
+});
 
-  it('finds the newest time at a point of the road, and nothing far from it', () => {
-    expect(timeNear(0, 103)).toBeCloseTo(50, 0);
-    expect(timeNear(0, 0)).toBeNull();
-  });
+it('finds the newest time at a point of the road, and nothing far from it', () => {
+  expect(timeNear(0, 103)).toBeCloseTo(50, 0);
+  expect(timeNear(0, 0)).toBeNull();
+});
 
-  it('holds the plots where the road was clicked', () => {
-    expect(pointAt(0, -99)).toBeCloseTo(70, 0);
-    expect(isFrozen.value).toBe(true);
-    expect(cursorMark()?.y).toBeLessThan(-98);
-  });
+it('holds the plots where the road was clicked', () => {
+  expect(pointAt(0, -99)).toBeCloseTo(70, 0);
+  expect(isFrozen.value).toBe(true);
+  expect(cursorMark()?.y).toBeLessThan(-98);
 });

@@ -3,7 +3,7 @@ import type { Change, Frame, Lap, Limit, Run } from '../protocol/topics';
 import { Column, costColumn } from './columns';
 import { beginSession, frameListeners, receive, rewind } from './demultiplexer';
 import { events } from './event_log';
-import { bestLap, laps } from './laps';
+import { laps } from './laps';
 import { gapToLimit, limit, whyNoLimit } from './limit';
 import { live } from './live';
 import { road } from './road';
@@ -62,52 +62,42 @@ describe('a message', () => {
   });
 });
 
-describe('a frame', () => {
-  it('counts once, however often a paused run repeats it; listeners are called for each', () => {
-    const heard: number[] = [];
-    const listener = (_: Frame, now: number): void => void heard.push(now);
-    frameListeners.add(listener);
-    receive('/chicane/frame', frameWith({ time_s: 3, is_gated: true }), 0);
-    receive('/chicane/frame', frameWith({ time_s: 3, is_gated: true }), 5);
-    frameListeners.delete(listener);
-    expect([live.plots.length, events.value.length]).toEqual([1, 1]);
-    expect(heard).toEqual([0, 5]);
-  });
-
-  it('with an earlier time clears everything', () => {
-    see({ time_s: 30, last_lap_time_s: 28, is_gated: true });
-    expect(bestLap.value).toBe(28);
-    see({ time_s: 0.04, last_lap_time_s: 0 });
-    expect(live.plots.length).toBe(1);
-    expect(events.value).toEqual([]);
-    expect(bestLap.value).toBeNaN();
-  });
+it('a frame counts once, however often a paused run repeats it; listeners are called for each', () => {
+  const heard: number[] = [];
+  const listener = (_: Frame, now: number): void => void heard.push(now);
+  frameListeners.add(listener);
+  receive('/chicane/frame', frameWith({ time_s: 3, is_gated: true }), 0);
+  receive('/chicane/frame', frameWith({ time_s: 3, is_gated: true }), 5);
+  frameListeners.delete(listener);
+  expect([live.plots.length, events.value.length]).toEqual([1, 1]);
+  expect(heard).toEqual([0, 5]);
 });
 
 describe('what is cleared', () => {
   beforeEach(() => {
     receive('/chicane/limit', { is_known: true, lap_time_s: 20 } as Limit, 0);
     receive('/chicane/lap', lapWith(1, 30), 0);
+    receive('/chicane/plan', planWith(), 0);
     see({ time_s: 3, is_gated: true });
     shown.value = live.frame;
   });
-  const lengths = () => [live.plots.length, laps.value.length, events.value.length];
+  const lengths = () => [live.plots.length, live.trace.length, laps.value.length, events.value.length];
 
   it('where the run begins anew: history, laps and events; the frame that came stays, and the limit', () => {
     receive('/chicane/frame', frameWith({ time_s: 0.5 }), 0);
-    expect(lengths()).toEqual([1, 0, 0]);
+    expect(lengths()).toEqual([1, 1, 0, 0]);
     expect([live.frame?.time_s, limit.value?.lap_time_s]).toEqual([0.5, 20]);
   });
 
   it('at a jump in a recording: the newest frame too, so that an earlier one is not taken for a new run', () => {
     rewind();
-    expect(lengths()).toEqual([0, 0, 0]);
+    expect(lengths()).toEqual([0, 0, 0, 0]);
     expect([live.frame, shown.value?.time_s, limit.value?.lap_time_s]).toEqual([null, 3, 20]);
   });
 
   it('with another run: the limit and the frame shown too', () => {
     beginSession();
-    expect(lengths()).toEqual([0, 0, 0]);
-    expect([live.frame, shown.value, limit.value]).toEqual([null, null, null]);
+    expect(lengths()).toEqual([0, 0, 0, 0]);
+    expect([live.frame, live.plan, shown.value, limit.value]).toEqual([null, null, null, null]);
   });
 });

@@ -1,4 +1,4 @@
-import { describe, expect, it } from 'vitest';
+import { expect, it } from 'vitest';
 import { asksForWheel, firstGamepad, stickOf } from './gamepad';
 
 const button = (value: number): GamepadButton => ({ value, pressed: value > 0.5, touched: value > 0 });
@@ -8,24 +8,20 @@ function pad(axis: number, left = 0, right = 0, start = 0, mapping: GamepadMappi
   return { axes: [axis, 0, 0, 0], buttons, mapping, connected: true, id: 'a pad' };
 }
 
-describe('a gamepad', () => {
-  it('steers to the side of its stick, drives and brakes with its triggers', () => {
-    expect(stickOf(pad(-1))).toEqual({ steer: 1, throttle: 0 });
-    expect(stickOf(pad(1, 0, 1))).toEqual({ steer: -1, throttle: 1 });
-    expect(stickOf(pad(0.54, 1, 0))?.steer).toBeCloseTo(-0.5);
-    expect(stickOf(pad(0, 1, 0))).toEqual({ steer: 0, throttle: -1 });
-  });
+it('steers to the side of its stick, drives and brakes with its triggers', () => {
+  expect(stickOf(pad(-1))).toEqual({ steer: 1, throttle: 0 });
+  expect(stickOf(pad(1, 0, 1))).toEqual({ steer: -1, throttle: 1 });
+  expect(stickOf(pad(0.54, 1, 0))?.steer).toBeCloseTo(-0.5);
+  expect(stickOf(pad(0, 1, 0))).toEqual({ steer: 0, throttle: -1 });
+});
 
-  it('asks for nothing while it is let go, a little off the middle included', () => {
-    expect(stickOf(pad(0.05))).toBeNull();
-    expect(stickOf(pad(-0.08))).toBeNull();
-  });
+it('asks for nothing while it is let go, a little off the middle included', () => {
+  for (const axis of [0.05, -0.08]) expect(stickOf(pad(axis))).toBeNull();
+});
 
-  it('is one with the standard mapping, and takes the wheel by Start', () => {
-    const odd = pad(0, 0, 0, 0, '');
-    expect(firstGamepad([null, odd])).toBeNull();
-    expect(firstGamepad([null, odd, pad(0)])?.mapping).toBe('standard');
-    expect(asksForWheel(pad(0))).toBe(false);
-    expect(asksForWheel(pad(0, 0, 0, 1))).toBe(true);
-  });
+it('is one with the standard mapping, and takes the wheel by Start', () => {
+  const odd = pad(0, 0, 0, 0, '');
+  expect(firstGamepad([null, odd])).toBeNull();
+  expect(firstGamepad([null, odd, pad(0)])?.mapping).toBe('standard');
+  expect([0, 1].map((start) => asksForWheel(pad(0, 0, 0, start)))).toEqual([false, true]);
 });

@@ -1,4 +1,4 @@
-import { describe, expect, it } from 'vitest';
+import { expect, it } from 'vitest';
 import type { Plan } from '../protocol/topics';
 import { COLUMN_COUNT, Column } from './columns';
 import { hindsight } from './hindsight';
@@ -23,14 +23,12 @@ function driven(until: number): History {
   return all;
 }
 
-describe('hindsight', () => {
-  it('compares the plan of a second ago with the path driven since', () => {
-    const plans = [0, 0.5, 1, 1.5, 2].map(plan);
-    const seen = hindsight(plans, driven(2), 2);
-    expect(seen?.plan).toBe(plans[2]);
-    expect([...(seen?.drivenX ?? [])]).toEqual([10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20]);
-    expect(seen?.predicted).toMatchObject({ x: expect.closeTo(20), y: expect.closeTo(0.8), yaw: expect.closeTo(0.16) });
-  });
-
-  it('is nothing before there is a plan', () => expect(hindsight([], driven(1), 1)).toBeNull());
+it('compares the plan of a second ago with the path driven since', () => {
+  const plans = [0, 0.5, 1, 1.5, 2].map(plan);
+  const seen = hindsight(plans, driven(2), 2);
+  expect(seen?.plan).toBe(plans[2]);
+  expect([...(seen?.drivenX ?? [])]).toEqual([10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20]);
+  expect(seen?.predicted).toMatchObject({ x: expect.closeTo(20), y: expect.closeTo(0.8), yaw: expect.closeTo(0.16) });
 });
+
+it('is nothing before there is a plan', () => expect(hindsight([], driven(1), 1)).toBeNull());

@@ -20,11 +20,8 @@ describe('with what a lap was driven', () => {
   });
 
   it('tells who drove, faults, and changes on the way', () => {
-    expect(setupInWords(lap({ by_hand_share: 1, faults: ['half_grip'], is_mixed: true }), START)).toEqual([
-      'by hand',
-      'fault: half grip',
-      'changed in the lap',
-    ]);
+    const words = setupInWords(lap({ by_hand_share: 1, faults: ['half_grip'], is_mixed: true }), START);
+    expect(words).toEqual(['by hand', 'fault: half grip', 'changed in the lap']);
     expect(driverOf(lap({ by_hand_share: 0.254 }))).toBe('25 % by hand');
     expect(driverOf(lap({ by_hand_share: NaN }))).toBe('');
   });
@@ -46,10 +43,7 @@ describe('what differed between two laps', () => {
   });
 
   it('does not guess what a setting was before it was changed', () => {
-    expect(differences(lap({}), changed, new Map())).toContainEqual({
-      what: 'latency_ms',
-      a: 'as at the start',
-      b: '60',
-    });
+    const unknown = { what: 'latency_ms', a: 'as at the start', b: '60' };
+    expect(differences(lap({}), changed, new Map())).toContainEqual(unknown);
   });
 });

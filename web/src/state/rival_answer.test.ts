@@ -20,13 +20,8 @@ it('the other car has laps along the road, from its poses', () => {
   const samples = new LapSamples();
   samples.setLength(100);
   const times = Array.from({ length: 221 }, (_, i) => i / 10);
-  const poses = {
-    ...none.poses,
-    time_s: times,
-    distance_m: times.map((time) => 10 * time),
-    speed_mps: times.map(() => 10),
-    x_m: times,
-  };
+  const driven = { distance_m: times.map((time) => 10 * time), speed_mps: times.map(() => 10) };
+  const poses = { ...none.poses, ...driven, time_s: times, x_m: times };
   const newest = sampleRace(samples, { ...none, b: [lap(1, 10), lap(2, 10)], poses }, 40, -1);
   expect(newest).toBe(22);
   expect(samples.laps).toEqual([0, 1]);
@@ -36,13 +31,8 @@ it('the other car has laps along the road, from its poses', () => {
 });
 
 it('reads what the program tells, whatever is missing', () => {
-  const read = readRace({
-    id: 3,
-    state: 'ended',
-    why: 'lost',
-    rival: [{ lap: 2, lap_time_s: 26.5, sector_times_s: [8, 9, null], is_clean: true }],
-    trace: { time_s: [1, 2] },
-  });
+  const rival = [{ lap: 2, lap_time_s: 26.5, sector_times_s: [8, 9, null], is_clean: true }];
+  const read = readRace({ id: 3, state: 'ended', why: 'lost', rival, trace: { time_s: [1, 2] } });
   expect([read.id, read.state, read.why, read.a]).toEqual([3, 'ended', 'lost', []]);
   expect(read.b[0]).toEqual({ lap: 2, time: 26.5, isClean: true });
   expect(read.poses.x_m).toEqual([]);
@@ -50,22 +40,14 @@ it('reads what the program tells, whatever is missing', () => {
 });
 
 it('shows the other car at the time that is shown: between two poses, and a moment beyond the last', () => {
-  const poses = {
-    time_s: [10, 11],
-    x_m: [0, 20],
-    y_m: [0, 0],
-    yaw_rad: [3.1, -3.1],
-    steer_rad: [0.1, 0.2],
-    speed_mps: [20, 20],
-    distance_m: [0, 20],
-  };
+  const places = { time_s: [10, 11], x_m: [0, 20], y_m: [0, 0], distance_m: [0, 20] };
+  const poses = { ...places, yaw_rad: [3.1, -3.1], steer_rad: [0.1, 0.2], speed_mps: [20, 20] };
   const pose = { x: NaN, y: NaN, yaw: NaN, steer: NaN };
   expect(poseOf(poses, 10.5, pose)).toBe(true);
   expect(pose.x).toBeCloseTo(10);
   expect(Math.cos(pose.yaw)).toBeLessThan(-0.999); // the short way round
   expect(poseOf(poses, 11.5, pose)).toBe(true);
   expect(pose.x).toBeCloseTo(20 + 10 * Math.cos(-3.1));
-  expect(poseOf(poses, 12, pose)).toBe(false);
-  expect(poseOf(poses, 9.9, pose)).toBe(false);
+  for (const time of [12, 9.9]) expect(poseOf(poses, time, pose)).toBe(false);
   expect(poseOf(none.poses, 10, pose)).toBe(false);
 });

@@ -88,16 +88,8 @@ describe('changes', () => {
 describe('the schema', () => {
   it('is read with care', () => {
     const values = { minimum: 0, maximum: 1, choices: [], default: 0.5, start: 0.25 };
-    const good = {
-      key: 'a.b',
-      group: 'a',
-      kind: 'number',
-      unit: 'm',
-      meaning: 'x',
-      is_live: true,
-      is_fixed: true,
-      ...values,
-    };
+    const named = { key: 'a.b', group: 'a', kind: 'number', unit: 'm', meaning: 'x' };
+    const good = { ...named, is_live: true, is_fixed: true, ...values };
     expect(readSchema([good, null, 7, { key: 'x' }, { ...good, kind: 'matrix' }])).toEqual([good]);
     const unknown = { unit: '', minimum: null, maximum: null, choices: [], default: null, start: null, meaning: '' };
     const least = { key: 'a.b', kind: 'bool' };

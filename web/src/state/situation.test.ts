@@ -1,4 +1,4 @@
-import { describe, expect, it } from 'vitest';
+import { expect, it } from 'vitest';
 import { UNKNOWN_SITUATION } from '../protocol/messages';
 import { beginSession, receive } from './demultiplexer';
 import { refreshText } from './shown';
@@ -20,31 +20,27 @@ const shownAt = (time: number, sentence = '', more = {}): string | undefined => 
   return situation.value?.sentence;
 };
 
-describe('the situation', () => {
-  it('is the one of the frame that is shown, of a run that begins anew another', () => {
-    beginSession();
-    expect(shownAt(1), 'a program that says nothing').toBeUndefined();
-    receive('/chicane/situation', said(1, 'Rolls'), 0);
-    receive('/chicane/situation', said(1.5, 'Brakes'), 0);
-    expect(shownAt(1)).toBe('Rolls');
-    expect(shownAt(1.5)).toBe('Brakes');
-    expect(shownAt(0, 'The car stands')).toBe('The car stands');
-  });
+it('is the one of the frame that is shown, of a run that begins anew another', () => {
+  beginSession();
+  expect(shownAt(1), 'a program that says nothing').toBeUndefined();
+  receive('/chicane/situation', said(1, 'Rolls'), 0);
+  receive('/chicane/situation', said(1.5, 'Brakes'), 0);
+  expect(shownAt(1)).toBe('Rolls');
+  expect(shownAt(1.5)).toBe('Brakes');
+  expect(shownAt(0, 'The car stands')).toBe('The car stands');
+});
 
-  it('is one alarm as long as the guard stops the car again within a second, or until a person drives', () => {
-    beginSession();
-    expect(shownAt(2, 'stops', { severity: 'alarm' })).toBe('stops');
-    expect([2.9, 3.1].map((time) => shownAt(time, 'rolls'))).toEqual(['stops', 'rolls']);
-    expect(shownAt(3.2, 'stops', { severity: 'alarm' })).toBe('stops');
-    expect(shownAt(3.3, 'by hand', { driver: 'person' })).toBe('by hand');
-  });
+it('is one alarm as long as the guard stops the car again within a second, or until a person drives', () => {
+  beginSession();
+  expect(shownAt(2, 'stops', { severity: 'alarm' })).toBe('stops');
+  expect([2.9, 3.1].map((time) => shownAt(time, 'rolls'))).toEqual(['stops', 'rolls']);
+  expect(shownAt(3.2, 'stops', { severity: 'alarm' })).toBe('stops');
+  expect(shownAt(3.3, 'by hand', { driver: 'person' })).toBe('by hand');
+});
 
-  it('has a reason behind its sentence', () => {
-    const stop = said(1, 'The guard stops the car', { severity: 'alarm', reason: 'the controller has no answer' });
-    expect(situationInWords(stop)).toEqual({
-      severity: 'bad',
-      text: 'The guard stops the car: the controller has no answer',
-    });
-    expect(situationInWords(said(1, 'Rolls'))).toEqual({ severity: 'good', text: 'Rolls' });
-  });
+it('has a reason behind its sentence', () => {
+  const stop = said(1, 'The guard stops the car', { severity: 'alarm', reason: 'the controller has no answer' });
+  const text = 'The guard stops the car: the controller has no answer';
+  expect(situationInWords(stop)).toEqual({ severity: 'bad', text });
+  expect(situationInWords(said(1, 'Rolls'))).toEqual({ severity: 'good', text: 'Rolls' });
 });

@@ -6,6 +6,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <span>
+
+#include "chicane/base/median.hpp"
 
 namespace chicane::identify {
 namespace {
@@ -294,9 +297,7 @@ void add_residuals(const std::vector<DriveLog>& logs, const std::vector<Window>&
   }
   for (std::size_t kind = 0; kind < 5; ++kind) {
     if (sizes[kind].empty()) continue;
-    const auto middle = sizes[kind].begin() + static_cast<std::ptrdiff_t>(sizes[kind].size() / 2);
-    std::nth_element(sizes[kind].begin(), middle, sizes[kind].end());
-    fit.residual[kind] = kPerMedian * *middle;
+    fit.residual[kind] = kPerMedian * median(std::span(sizes[kind]));
   }
   fit.correlation = correlated.factor();
 }
