@@ -183,6 +183,7 @@ TEST(Cli, ARunWritesItsReport) {
   const Outcome nowhere = chicane_program("drive --fast --laps 9 --report no/such/folder/run.html");
   EXPECT_EQ(nowhere.code, 3);
   EXPECT_THAT(nowhere.err, HasSubstr("no/such/folder/run.html: cannot be written"));
+  EXPECT_EQ(chicane_program("limit --track oval --car road-car --csv /no/such/folder/line.csv").code, 3);
 }
 
 TEST(Cli, FindsAFileByItsPathOfTheLastVersion) {

@@ -27,6 +27,25 @@ class PlanRuns : public testing::Test, protected Folder {
   const std::string file_ = path("runs.jsonl");
 };
 
+TEST_F(PlanRuns, ACampaignTellsHowToRepeatWhereTheCarLeavesTheRoadAndGoesOnWithWhatIsMissing) {
+  const std::string command =
+      "campaign --faults frozen_sensor --for-s inf --every-s 5 --tracks oval,hairpins --cars udacity "
+      "--jobs 1 --set guard.mode=off --results '" +
+      file_ + "'";
+  const Outcome whole = chicane_program(command);
+  EXPECT_EQ(whole.code, 1);
+  const std::vector<std::string> told = lines();
+  ASSERT_EQ(told.size(), 3U) << whole.err;
+  const std::size_t drive = whole.out.find("chicane drive");
+  ASSERT_NE(drive, std::string::npos);
+  const std::string again = whole.out.substr(drive + 8, whole.out.find('\n', drive) - drive - 8);
+  EXPECT_GT(OrderedJson::parse(chicane_program(again + " --json").out)["off_track_events"], 0) << again;
+
+  keep({told[0], told[1]});
+  EXPECT_EQ(chicane_program(command).out, whole.out);
+  EXPECT_EQ(lines(), told) << "the same bytes";
+}
+
 TEST_F(PlanRuns, RecoverGoesOnWithWhatIsMissingAndSaysTheSame) {
   const std::string command =
       "recover --tracks oval --cars udacity --starts 3 --seed 2 --jobs 1 --json --results '" + file_ + "'";
@@ -84,6 +103,27 @@ TEST_F(PlanRuns, ALaneChangeIsShownFromItsFile) {
   line["entry_kmph"] = 77;
   keep({told[0], line.dump()});
   EXPECT_EQ(OrderedJson::parse(chicane_program(command).out)["rows"][0]["entry_kmph"], 77);
+}
+
+TEST(PlanCommand, ASecondStartTakesThePlanFromTheCache) {
+  const Folder cache;
+  const std::string drive = "XDG_CACHE_HOME='" + cache.path("cache") + "' " + kProgram +
+                            "drive --preset race --track oval --fast --laps 1 --json";
+  const auto lap_of = [](const Outcome& outcome) {
+    return OrderedJson::parse(outcome.out, nullptr, false)["laps"][0]["lap_time_s"].dump();
+  };
+  const Outcome first = shell(drive);
+  ASSERT_EQ(first.code, 0) << first.err;
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(cache.path("cache/chicane"))) files.push_back(entry.path());
+  ASSERT_GE(files.size(), 1U);
+  EXPECT_EQ(lap_of(shell(drive)), lap_of(first));
+  for (const auto& file : files) fs::resize_file(file, 10);
+  const Outcome damaged = shell(drive);
+  for (const auto& file : files)
+    EXPECT_THAT(damaged.err, HasSubstr(file.string() + " is damaged and ignored"));
+  EXPECT_EQ(lap_of(damaged), lap_of(first));
+  EXPECT_EQ(shell(drive + " --no-cache").code, 0);
 }
 
 TEST(PlanCommand, CtrlCEndsPlanningAtOnce) {

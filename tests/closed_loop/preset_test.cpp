@@ -112,6 +112,25 @@ TEST(Presets, StayOnTheRoadWhenTheAnswerIsLateOrSlow) {
   }
 }
 
+/// On the lake that it was written for; on lakeside it leaves the road (docs/measured/claims.md, A6).
+TEST(Presets, MeasuredLatencyLapsTheOriginalLakeWithBothErrorsAsWritten) {
+  for (const char* speed_mps : {"13.4112", "17.8816", "22.352"}) {  // 30, 40, 50 mph
+    const auto run = drive_alone("measured-latency", {{"track", "original-lake"},
+                                                      {"laps", "3"},
+                                                      {"cubic_mpc.speed_reference_mps", speed_mps},
+                                                      {"cubic_mpc.lateral_error_integrated", "true"}});
+    EXPECT_EQ(run.fallbacks, 0U) << speed_mps;
+  }
+}
+
+TEST(Presets, FastShortStepTakesItsSpeedFromTheWeightOnAcceleration) {
+  const auto slow = drive_alone("fast-short-step");
+  const auto fast = drive_alone("fast-short-step", {{"cubic_mpc.weight_throttle", "48"}});
+  EXPECT_EQ(fast.fallbacks, 0U);
+  EXPECT_LT(slow.total.rms_lateral_error, 0.5);  // "in the centre of the lane"
+  EXPECT_GT(top_mph(fast), top_mph(slow) + 15.0);
+}
+
 TEST(Presets, WeightedSlowsInCurvesAndDelayInModelForThem) {
   const auto weighted = drive_alone("weighted");
   ASSERT_EQ(weighted.laps.size(), 2U);

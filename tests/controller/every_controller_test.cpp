@@ -80,6 +80,13 @@ TEST(Controllers, AnswerWithABoundedCommandWhateverIsMeasured) {
       if (controller->name() == "tracking-mpc") continue;  // drives on by what it remembers
       EXPECT_TRUE(is_usable || result.guard.rung != Rung::kController) << &now - hostile.data();
     }
+    model::Measurement good = on_a_left_bend();
+    for (int i = 0; i < 4; ++i) {
+      good.time = 1e3 + 0.05 * i;
+      (void)controller->step(good, Deadline::never());
+    }
+    EXPECT_EQ(controller->step(good, Deadline::never()).guard.rung, Rung::kController)
+        << "no poison stays behind";
     EXPECT_EQ(answer_to(*controller, on_a_left_bend()).guard.rung, Rung::kController);
   }
 }

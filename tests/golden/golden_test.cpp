@@ -53,7 +53,7 @@ INSTANTIATE_TEST_SUITE_P(
     Runs, GoldenRun,
     ::testing::Values(
         Golden{"default_udacity", "track=lakeside", 0x0c8200a0a532b872, 0x17e76bd240ed9900},
-        Golden{"default_road_car", "track=hairpins car=road-car", 0x3a16a588d79ba285, 0xb3ce88dad40045a3},
+        Golden{"default_road_car", "track=hairpins car=road-car", 0x66f7b307eb7a2bf0, 0xdf44a3e40350d5f5},
         Golden{"with_noise", "track=oval sensor.position_noise_m=0.05 seed=7", 0xa5873ef58cd3a8c4,
                0x71557e2981879082},
         Golden{"weighted", "preset=weighted guard.mode=off", 0x2289abd6e0b12064, 0xb8e2970005c7aff6},

@@ -2,7 +2,7 @@
 // A recorded run in the page: served by chicane replay with a second future beside it, and alone in a report.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { mkdtempSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, afterEach, before, describe, it } from 'node:test';
@@ -178,6 +178,8 @@ describe('a report', () => {
     const ink = (await page.pdf()).length;
     assert.ok(ink > 30_000, `${ink} bytes of print`);
     assert.ok(statSync(report).size <= 800_000, `${statSync(report).size} bytes of two runs`);
+    const fetched = /(src|href)="(?!data:|#)/; // by its reader
+    assert.doesNotMatch(readFileSync(report, 'utf8').replace(/<script[\s\S]*?<\/script>/g, ''), fetched);
     assert.deepEqual(failures, []);
   });
 });

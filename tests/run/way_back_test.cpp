@@ -4,6 +4,7 @@
 #include "chicane/run/parallel.hpp"
 #include "support/chicane_test.hpp"
 #include "support/runs.hpp"
+#include "support/slow_tests.hpp"
 
 namespace chicane::run {
 namespace {
@@ -76,6 +77,21 @@ TEST(WayBack, IsFoundFromWhereItWasMissed) {
     const auto outcome = test::good(drive_back(scenario, starts[each.start - 1], roads));
     EXPECT_TRUE(outcome->has_come_back()) << each.track << " " << each.car << " " << each.start;
     EXPECT_LT(outcome->farthest, 95.0);  // measured: 91.3 m from the edge, of a car that rolls back fast
+  }
+}
+
+TEST(WayBack, IsFoundFromAnywhere) {
+  constexpr std::size_t kStarts = kDrivesAll ? 20 : 5;
+  for (const char* track : {"lakeside", "oval"}) {
+    for (const char* car : {"udacity", "road-car"}) {
+      const scenario::Scenario scenario = scenario_on(track, car);
+      const auto starts = start_poses(make_track(scenario).value(), kStarts, 2);  // each kind in turn
+      const auto outcomes = drive_all_back(scenario, starts, 2);
+      for (std::size_t i = 0; i < outcomes.size(); ++i)
+        EXPECT_TRUE(outcomes[i].has_come_back())
+            << "chicane recover --starts " << kStarts << " --seed 2 --tracks " << track << " --cars " << car
+            << " --only " << i + 1;
+    }
   }
 }
 

@@ -91,6 +91,29 @@ TEST(StopPlanner, IsTheSameInAMirror) {
   }
 }
 
+/// The largest distance to the left of the middle [m] from which a car that stands on its road and heads to
+/// the left edge may creep with its wheels to the right.
+double farthest(const StopPlanner& planner, const road::KnownRoad& road, StopPlanner::Arc arc, double side) {
+  arc.steer = -side * 0.9 * kCars[1].steer_limit;
+  double inside = 0.0, outside = planner.edge(road, start_at(100.0, 0.0, 0.0, side * 0.9)) - 0.02;
+  for (int i = 0; i < 30; ++i) {
+    const double middle = 0.5 * (inside + outside);
+    (planner.creeps_inside(road, start_at(100.0, 0.0, side * middle, side * 0.9), arc) ? inside : outside) =
+        middle;
+  }
+  return inside;
+}
+
+TEST(StopPlanner, CreepsOnArcsThatStayInsideAndJudgesTheirEndAgain) {
+  const StopPlanner planner(kCars[1]);
+  const road::KnownRoad road = circle(1e5);
+  const double sure = farthest(planner, road, {.hold = 0.1}, 1.0);
+  EXPECT_GT(sure, 2.0);
+  EXPECT_NEAR(farthest(planner, road, {.hold = 0.1, .doubt = 0.1}, 1.0), sure + 0.1, 1e-3);
+  EXPECT_NEAR(farthest(planner, road, {.hold = 0.1}, -1.0), sure, 1e-3) << "mirror";
+  EXPECT_NEAR(farthest(planner, road, {.hold = 9.0, .doubt = 0.1}, 1.0), sure, 1e-6) << "no stop before it";
+}
+
 TEST(StopPlanner, SaysWhenTheCarIsTooFastForTheBend) {
   const road::KnownRoad road = circle(40.0);
   const StopPlanner planner(model::road_car_params());

@@ -21,36 +21,27 @@ struct Motion {
   double speed = 0.0;     ///< [m/s]
 };
 
-void set_motion(model::State& car, const Motion& motion) {
-  car.vx = motion.speed * cos(motion.slip);
-  car.vy = motion.speed * sin(motion.slip);
-  car.r = motion.yaw_rate;
-}
-
 /// Random number with magnitude in [low, high] and either sign.
 double either_sign(Random& chance, double low, double high) {
   const double value = chance.uniform(low, high);
   return chance.uniform() < 0.5 ? -value : value;
 }
 
-/// Sets a random motion of one kind.
-void set_random_motion(model::State& car, StartKind kind, Random& chance) {
+/// Random motion of one kind.
+Motion random_motion(StartKind kind, Random& chance) {
   switch (kind) {
     case StartKind::kStanding:
-      return;
+      break;
     case StartKind::kRolling:
-      return set_motion(car, {.speed = chance.uniform(2.0, 25.0)});
+      return {.speed = chance.uniform(2.0, 25.0)};
     case StartKind::kSliding:
-      return set_motion(car, {.yaw_rate = chance.uniform(-1.0, 1.0),
-                              .slip = chance.uniform(-kPi / 3.0, kPi / 3.0),
-                              .speed = chance.uniform(5.0, 25.0)});
+      return {chance.uniform(-1.0, 1.0), chance.uniform(-kPi / 3.0, kPi / 3.0), chance.uniform(5.0, 25.0)};
     case StartKind::kBackwards:
-      return set_motion(car, {.speed = -chance.uniform(1.0, 8.0)});
+      return {.speed = -chance.uniform(1.0, 8.0)};
     case StartKind::kSpun:
-      return set_motion(car, {.yaw_rate = chance.uniform(-3.0, 3.0),
-                              .slip = either_sign(chance, kPi / 2.0, kPi),
-                              .speed = chance.uniform(5.0, 20.0)});
+      return {chance.uniform(-3.0, 3.0), either_sign(chance, kPi / 2.0, kPi), chance.uniform(5.0, 20.0)};
   }
+  return {};
 }
 
 }  // namespace
@@ -68,7 +59,10 @@ std::vector<StartPose> start_poses(const road::Track& track, int count, std::uin
     start.state.x = at.position.x() - d * sin(at.heading);
     start.state.y = at.position.y() + d * cos(at.heading);
     start.state.psi = at.heading + chance.uniform(-kPi, kPi);
-    set_random_motion(start.state, kind, chance);
+    const Motion motion = random_motion(kind, chance);
+    start.state.vx = motion.speed * cos(motion.slip);
+    start.state.vy = motion.speed * sin(motion.slip);
+    start.state.r = motion.yaw_rate;
     starts.push_back(start);
   }
   return starts;

@@ -141,12 +141,6 @@ const model::Command* Fallback::planned(double time) const noexcept {
   return &plan_[static_cast<std::size_t>(i)].command;
 }
 
-namespace {
-
-bool has_passed(double elapsed) noexcept { return std::isfinite(elapsed) && elapsed > 0.0; }
-
-}  // namespace
-
 double CommandGate::wheel_after(double elapsed) const noexcept {
   return last_.steer + model::left_by_lag(vehicle_.steer_lag, elapsed) * (wheel_ - last_.steer);
 }
@@ -159,7 +153,7 @@ model::Command CommandGate::limited(const model::Command& asked, double elapsed)
     command.throttle = -Fallback::kGentleBraking * vehicle_.brake_throttle_limit;
   command.steer = std::clamp(command.steer, -vehicle_.steer_limit, vehicle_.steer_limit);
   command.throttle = std::clamp(command.throttle, -1.0, 1.0);
-  if (!has_passed(elapsed)) return command;
+  if (!std::isfinite(elapsed) || !(elapsed > 0.0)) return command;
   const double wheel = wheel_after(elapsed);
   const double turned = 1.0 - model::left_by_lag(vehicle_.steer_lag, elapsed);
   const double reach = vehicle_.steer_rate_limit * elapsed / turned;
@@ -175,7 +169,7 @@ double drive_to_valid_speed(const model::VehicleParams& car, double v) noexcept 
 
 model::Command CommandGate::pass(const model::Command& asked, double elapsed) noexcept {
   const model::Command sent = limited(asked, elapsed);
-  wheel_ = has_passed(elapsed) ? wheel_after(elapsed) : sent.steer;
+  wheel_ = std::isfinite(elapsed) && elapsed > 0.0 ? wheel_after(elapsed) : sent.steer;
   return last_ = sent;
 }
 

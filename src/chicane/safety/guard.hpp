@@ -171,6 +171,7 @@ class Guard {
     bool is_on_road = false;           ///< all contact patches are inside the edges
     bool may_creep = false;            ///< on the road, and slow enough to turn on an arc beside the edge
     double hold = 0.0;                 ///< time for which a command may act [s]
+    double doubt = 0.0;                ///< by which the end of an arc may be predicted off the road [m]
   };
   /// Updates run_.is_astray.
   void watch_course(const std::optional<StopStart>& start) noexcept;
@@ -184,7 +185,7 @@ class Guard {
   [[nodiscard]] bool lead_back(double act, const Cycle& cycle, controller::StepResult& result) noexcept;
   /// The arc of a car that creeps beside the edge, in place of `command`: a gentle way to the line may lead
   /// over the edge where more lock does not, or the long way round.
-  void turn_beside_edge(const LedCar& led, model::Command& command) noexcept;
+  void turn_beside_edge(LedCar& led, model::Command& command) noexcept;
   /// The stored stop with the wheels of result.command, or standstill with them; false where a moving car has
   /// no stop. `waits`: the wheels have not turned yet.
   [[nodiscard]] bool turn_wheels_only(const LedCar& led, bool waits, controller::StepResult& result) noexcept;

@@ -23,7 +23,7 @@ struct GuardReport {
 
 /// Version of the guard, in results and recordings: raised when the guard may decide differently on the same
 /// input. Runs that name none are of version 1.
-inline constexpr int kGuardVersion = 5;
+inline constexpr int kGuardVersion = 6;
 
 /// What a guard does with what it finds.
 enum class GuardMode : std::uint8_t {

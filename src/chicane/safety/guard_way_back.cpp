@@ -143,15 +143,13 @@ using controller::Rung;
 
 // Origins (chosen: by trial, see Guard):
 // - Derived: kLedBackSpeed (twice the pace of tracking::way_back), kAcross (its course of 45°),
-//   kTrialSpeed, kCreep (ResetWatch's speed of a standing car), kLongestRound (2π times udacity's radius of
-//   6.4 m at kCreep), kLongestAskPause (ResetWatch::kLongest).
-// - Chosen, docs/guard.md: kCreepDrive, kLongestCreep, kCreepNearer, kCreepStop, kArcDoubt (eq. 6c),
-//   kSeenTurn, kLeastTurned.
+//   kTrialSpeed (ResetWatch's speed of a standing car), kLongestAskPause (ResetWatch::kLongest).
+// - Chosen, docs/guard.md: kArcDoubt (eq. 6c), kSeenTurn, kLeastTurned.
 // - Chosen, docs/safety.md: kLost, kAlong, kReleaseTime, kStillTime, kTrialWay, kTrialRoom, kMostAside,
 //   kNoAnswerTime.
 // - Chosen: kChord, kAlongWaypoints (waypoints 10 m apart in a bend of 18 m); for what their lines say:
 //   kAtRest, kRestTime, kRefusedTime, kGain, kMostAgainstRolling, kTrialPedal, kStillCreeps,
-//   kCreepStep, kTurnedWheels.
+//   kTurnedWheels.
 constexpr double kAtRest = 0.05;       // [m/s]
 constexpr double kRestTime = 0.3;      // [s] below it after which a car is at rest
 constexpr double kLedBackSpeed = 6.0;  // [m/s] below which a car that is off the road is led back
@@ -167,15 +165,8 @@ constexpr double kTrialWay = 0.5;    // share of the car's length that is driven
 constexpr double kTrialRoom = 1.0;   // to the edge [m], where no stop fits; half of it during the trial
 constexpr double kTrialSpeed = 1.0;  // [m/s]
 constexpr double kTrialPedal = 0.3;
-constexpr double kCreep = 1.0;             // [m/s] of a car that turns at the edge
 constexpr double kStillCreeps = 1.2;       // times kCreep: leaves room for the drive to overshoot it
-constexpr double kCreepDrive = 2.5;        // [1/s] of its drive: turned wheels resist
-constexpr double kCreepStep = 0.2;         // [s] of creeping that are simulated at once
-constexpr double kLongestCreep = 6.0;      // [s]
-constexpr double kLongestRound = 40.0;     // [s] a turn at full lock
-constexpr double kCreepStop = 0.3;         // [s] in which a creeping car stops
 constexpr double kArcDoubt = 0.1;          // [m] by which an arc may be predicted too near the edge
-constexpr double kCreepNearer = 5e-3;      // [m] by which a car may come nearer to the edge, or over it
 constexpr double kSeenTurn = 0.06;         // [rad] of turning after which a car that is led is judged by it
 constexpr double kLeastTurned = 0.5;       // share of it that shows that the wheels answer
 constexpr double kTurnedWheels = 0.1;      // share of full lock that wheels may lack
@@ -185,32 +176,6 @@ constexpr double kChord = 0.7;             // [m] by which waypoints cut a bend
 constexpr double kAlongWaypoints = 0.35;   // [rad] off the line of waypoints that bends between them, or off
                                            // the course that the car has by its estimate
 constexpr double kNoAnswerTime = 1.0;      // [s] after which a controller without an answer begins anew
-
-/// The command of a car that creeps.
-model::Command creep(double steer, double vx, const model::VehicleParams& car) noexcept {
-  return {steer, throttle_for(car, kCreepDrive * std::max(kCreep - vx, 0.0), vx)};
-}
-
-/// Whether a car that creeps from `at` on with its wheels turned stays inside the edges until it is along the
-/// road or as far from the edge as before (docs/guard.md, eq. 6c). It comes to rest on this arc wherever it
-/// is stopped; the arc beyond a stop after `hold` [s] is judged again. `goes_round`: the long way to the end.
-bool creeps_inside(const StopPlanner& planner, const road::KnownRoad& road, StopStart at, double steer,
-                   const model::VehicleParams& car, double hold, bool goes_round = false) noexcept {
-  at.body.steer = steer;
-  const double edge = planner.edge(road, at);
-  const double stops = at.time + hold + kCreepStop;
-  const double ends = at.time + (goes_round ? kLongestRound : kLongestCreep);
-  const double off = std::copysign(1.0, steer) * angle_difference(at.e, 0.0);
-  double least = edge, later = edge, to_turn = off < 0.0 ? -off : goes_round ? kTwoPi - off : 0.0;
-  do {
-    const double before = at.e;
-    double& nearest = at.time < stops ? least : later;
-    at = planner.advance(road, at, creep(steer, at.body.vx, car), kCreepStep, nearest);
-    to_turn -= std::copysign(1.0, steer) * angle_difference(at.e, before);
-  } while (at.time < ends && to_turn > 0.0 && (goes_round || !(planner.edge(road, at) > edge)));
-  const bool gets_there = !goes_round || to_turn <= 0.0;
-  return gets_there && std::min(least, later + kArcDoubt) > std::min(edge, kCreepNearer) - kCreepNearer;
-}
 
 }  // namespace
 
@@ -304,19 +269,20 @@ bool Guard::try_reset(const std::optional<StopStart>& start, const Cycle& cycle,
   model::Command command{0.0, speed < kTrialSpeed ? kTrialPedal : 0.0};
   // A car that stopped where the known road ends has no stop ahead of it, nor one that is across the road or
   // off it; the way of the trial does without there, and as far inside the edges as walking pace needs.
-  // Nearer to one it is an arc along the road that comes no nearer.
+  // Nearer to one it is an arc that leads along the road inside the edges.
   const double edge = start ? filter_.planner().edge(road_, *start) : -kFarFromRoad;
   const bool has_room = edge < 0.0 || edge >= (run_.tried > 0.0 ? 0.5 : 1.0) * kTrialRoom;
   const bool has_stop = start && verify(*start, cycle, command, true) != Fit::kNone;
   if (!has_room && !has_stop) {
     const model::VehicleParams vehicle = led_vehicle();
     const double lock = std::copysign(vehicle.steer_limit, -start->e);
-    if (!creeps_inside(filter_.planner(), road_, *start, lock, vehicle, cycle.longest)) {
+    const double hold = PredictiveFilter::late_hold(cycle.interval, cycle.longest);
+    if (!filter_.planner().creeps_inside(road_, *start, {.steer = lock, .hold = hold})) {
       if (stands()) report_.reason = controller::GuardReason::kFacesEdge;
       return false;
     }
     const bool has_turned = std::fabs(lock - start->body.steer) < kTurnedWheels * vehicle.steer_limit;
-    command = has_turned ? creep(lock, speed, vehicle) : model::Command{lock, 0.0};
+    command = has_turned ? filter_.planner().creep(lock, speed) : model::Command{lock, 0.0};
     filter_.withdraw_stop();
     if (!has_turned) {
       take_over(command, Rung::kReturnToRoad, result);
@@ -372,21 +338,21 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   const double edge = led.start ? filter_.planner().edge(road_, *led.start) : 0.0;
   led.stands = std::fabs(car.vx) < kStandingSpeed && !rolls_back;
   led.is_on_road = led.start && edge >= 0.0;
-  led.may_creep =
-      led.is_on_road && (led.stands || (std::fabs(car.vx) < kStillCreeps * kCreep && !rolls_back));
+  led.may_creep = led.is_on_road &&
+                  (led.stands || (std::fabs(car.vx) < kStillCreeps * StopPlanner::kCreep && !rolls_back));
   run_.creeps &= led.may_creep;
-  led.hold = cycle.longest;
+  led.hold = PredictiveFilter::late_hold(cycle.interval, cycle.longest);
   turn_beside_edge(led, result.command);
   // The wheels turn at standstill: driving meanwhile would use up the room to the edge.
   const bool has_turned =
       std::fabs(result.command.steer - car.steer) < kTurnedWheels * led.vehicle.steer_limit;
   const bool waits = led.stands && led.is_on_road && !(turns_as_asked(act, car) && has_turned);
   if (led.stands && result.command.throttle > 0.0)
-    result.command = creep(result.command.steer, car.vx, led.vehicle);
+    result.command = filter_.planner().creep(result.command.steer, car.vx);
   Fit fit = led.start && !waits ? verify(*led.start, cycle, result.command, true) : Fit::kNone;
   if (fit == Fit::kNone && led.may_creep && !waits && has_turned &&
       stays_on_road(led, car.steer, run_.goes_round)) {
-    result.command = creep(result.command.steer, car.vx, led.vehicle);
+    result.command = filter_.planner().creep(result.command.steer, car.vx);
     fit = Fit::kSeen;
     run_.creeps = true;
   }
@@ -400,19 +366,25 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
 }
 
 bool Guard::stays_on_road(const LedCar& led, double angle, bool goes_round) const noexcept {
-  return creeps_inside(filter_.planner(), road_, *led.start, angle, led.vehicle, led.hold, goes_round);
+  return filter_.planner().creeps_inside(road_, *led.start, {angle, led.hold, led.doubt, goes_round});
 }
 
-void Guard::turn_beside_edge(const LedCar& led, model::Command& command) noexcept {
-  const double now = led.state.steer;
-  run_.goes_round = run_.goes_round && led.may_creep && stays_on_road(led, now, true);
-  if (run_.goes_round) {
-    command = creep(now, led.state.vx, led.vehicle);
-  } else if (led.may_creep && !stays_on_road(led, command.steer)) {
-    const double lock = std::copysign(led.vehicle.steer_limit, -led.start->e);
-    const bool goes_on = run_.creeps && stays_on_road(led, now);
-    run_.goes_round = !goes_on && !stays_on_road(led, lock) && stays_on_road(led, -lock, true);
-    command = creep(goes_on ? now : run_.goes_round ? -lock : lock, led.state.vx, led.vehicle);
+void Guard::turn_beside_edge(LedCar& led, model::Command& command) noexcept {
+  const bool goes_on_round = std::exchange(run_.goes_round, false);
+  if (!led.may_creep) return;
+  const double now = led.state.steer, asked = command.steer;
+  const double lock = std::copysign(led.vehicle.steer_limit, -led.start->e);
+  // An arc in doubt is the way of a car that has no other. A car that has stood astray has: off the road.
+  for (const double doubt : {0.0, run_.has_stood_astray ? 0.0 : kArcDoubt}) {
+    led.doubt = doubt;
+    run_.goes_round = goes_on_round && stays_on_road(led, now, true);
+    if (!run_.goes_round && stays_on_road(led, asked)) return;
+    const bool goes_on = run_.goes_round || (run_.creeps && stays_on_road(led, now));
+    const bool is_short = !goes_on && stays_on_road(led, lock);
+    run_.goes_round |= !goes_on && !is_short && stays_on_road(led, -lock, true);
+    const double steer = goes_on ? now : run_.goes_round ? -lock : lock;
+    command = filter_.planner().creep(steer, led.state.vx);
+    if (goes_on || is_short || run_.goes_round) return;
   }
 }
 

@@ -249,6 +249,11 @@ bool PredictiveFilter::holds_as_usual(const Request& request, double longest, Gu
   return holds;
 }
 
+double PredictiveFilter::late_hold(double interval, double longest) noexcept {
+  const double cycle = interval > 0.0 ? interval : kAssumedCycle;
+  return std::min(std::max(cycle + kLateness, longest), kLongestHold);
+}
+
 /// The command is held, in this order, (1) as usual, at once and late, where lateness varies; (2) until a
 /// late next command, at least the latest of the last ones; (3) until one in time, off a planned lap. On a
 /// lap (4) the lap itself is the way on. A led car that begins to move has (2) alone.
@@ -258,7 +263,7 @@ Fit PredictiveFilter::verify(const Request& request, GuardReport& report) noexce
   const double held = std::clamp(longest, kShortestHold, kLongestHold);
   // How far a car goes that begins to move shows only once its drive acts.
   const bool begins = request.is_led && request.start.body.vx < kCrawl;
-  const double late = std::min(std::max(cycle + kLateness, longest), kLongestHold);
+  const double late = late_hold(cycle, longest);
   if (!begins && !holds_as_usual(request, longest, report)) return Fit::kNone;
   const Fit fit = verify_held(request, begins ? std::max(kFirstHold, held) : late, report);
   if (fit != Fit::kNone || begins) return fit;

@@ -34,6 +34,8 @@ class PredictiveFilter {
   /// commands"): the original answers after 160 ms at most, 100 are configured.
   static constexpr double kLateness = 0.06;
   static constexpr double kLongestHold = 0.75;  ///< [s] a command is held, at most; chosen, docs/guard.md
+  /// Time for which a command acts until a late next one [s], after `interval` and the `longest` of late.
+  [[nodiscard]] static double late_hold(double interval, double longest) noexcept;
   /// Braking of the first law: gentle, and stable without feedback. Chosen.
   static constexpr Braking kGentle{0.8, 1.6, 0.7};
   /// Fixed for a run.

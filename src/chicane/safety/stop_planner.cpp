@@ -13,13 +13,16 @@ namespace {
 
 // Origins (chosen: by trial, see Guard):
 // - Derived: kDamping (5 % of overshoot), kLapDamping (none), kSpeedTime (the receiver's), kSlipShift (a
-//   central difference far below any peak), kMostOffset (Guard's kFarFromRoad), kGravity, kRounded.
+//   central difference far below any peak), kMostOffset (Guard's kFarFromRoad), kGravity, kRounded,
+//   kCreepStop (model::kRestTime and the lag of the drive), kLongestRound (2π times udacity's radius of 6.4 m
+//   at kCreep).
 // - Measured: kFrictionDoubt (eq. 5b), kStiffnessDoubt (of the size that `identify` leaves: 1.3 and 1.8 %,
 //   docs/identification.md), kYawRateDoubt, kHeadingDoubt (two deviations of the residuals of `default` on
 //   lakeside, seven cars: 0.006 rad/s and 0.0017 rad at most).
 // - Chosen, docs/guard.md: kPreview, kYawBandwidth, kMostPerMetre (eq. 3), kGripShare (eq. 4: a reserve of
 //   15 %), kBeyond, kKept (eq. 4a), kForeseenUse, kHorizon (eq. 5: braking from 60 m/s), kDoubtWithWheels
-//   (eq. 5b), kSlow (eq. 3b), kMostSlide, kSlideGrows ("A spin is no stop").
+//   (eq. 5b), kSlow (eq. 3b), kMostSlide, kSlideGrows ("A spin is no stop"), kLongestCreep, kCreepNearer
+//   (eq. 6c).
 // - Chosen: kStanding (below Guard's), kLeastBraking (a car in a bend has to stop, too), kStride (two
 //   cars), kTurns, kLeastShrink, kLeastTurning (divisors above 0).
 constexpr double kStanding = 0.3;  // [m/s] slower than that the car counts as standing
@@ -49,6 +52,11 @@ constexpr double kMostSlide = 0.35;        // [rad] of slip: a car that slides m
 constexpr double kSlideGrows = 0.1;        // [rad] by which one that slides more already may slide further
 constexpr double kLeastShrink = 0.2;       // of 1 − κ d, near the centre of a bend
 constexpr double kLeastTurning = 0.02;     // [1/m] of a car that turns back along the road
+constexpr double kCreepStep = 0.2;         // [s] of creeping that are simulated at once
+constexpr double kCreepStop = 0.6;         // [s] of creeping: more than the way of a stop from that pace
+constexpr double kLongestCreep = 6.0;      // [s]
+constexpr double kLongestRound = 40.0;     // [s] a turn at full lock
+constexpr double kCreepNearer = 5e-3;      // [m] by which a car may come nearer to the edge, or over it
 constexpr double kRounded = 1e-6;          // [m] more than the rounding of a bound
 constexpr double kMostOffset = 20.0;       // [m] beside the line the stop is given up
 
@@ -395,6 +403,21 @@ StopStart StopPlanner::advance(const road::KnownRoad& road, const StopStart& fro
     least_edge = this->least_edge(road, at, here, least_edge);
   }
   return at;
+}
+
+bool StopPlanner::creeps_inside(const road::KnownRoad& road, StopStart at, const Arc& arc) const noexcept {
+  at.body.steer = arc.steer;
+  const double from = edge(road, at), kept = std::min(from, kCreepNearer) - kCreepNearer;
+  const double stops = at.time + arc.hold + kCreepStop;
+  const double ends = at.time + (arc.goes_round ? kLongestRound : kLongestCreep);
+  const double side = std::copysign(1.0, arc.steer), off = side * angle_difference(at.e, 0.0);
+  double least = from, later = from, to_turn = off < 0.0 ? -off : arc.goes_round ? kTwoPi - off : 0.0;
+  do {
+    const double before = at.e;
+    at = advance(road, at, creep(arc.steer, at.body.vx), kCreepStep, at.time < stops ? least : later);
+    to_turn -= side * angle_difference(at.e, before);
+  } while (at.time < ends && to_turn > 0.0 && (arc.goes_round || !(edge(road, at) > from)));
+  return (!arc.goes_round || to_turn <= 0.0) && std::min(least, later + arc.doubt) > kept;
 }
 
 /// The curvature that brings a car back that is `beside` its place [m] and has another `course` [rad]. The

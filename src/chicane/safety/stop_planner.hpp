@@ -112,6 +112,21 @@ class StopPlanner {
                                const Braking& braking) const noexcept {
     return slowing(road, at, braking, curvatures_of(road, at, road.here(at.s), {}));
   }
+  static constexpr double kCreep = 1.0;  ///< [m/s] of a car that turns beside an edge
+  /// The command of a car that creeps: its speed `vx` [m/s] approaches kCreep.
+  [[nodiscard]] model::Command creep(double steer, double vx) const noexcept {
+    return {steer, throttle_for(model_.vehicle(), kCreepDrive * std::max(kCreep - vx, 0.0), vx)};
+  }
+  /// The way of a car that creeps with its wheels turned.
+  struct Arc {
+    double steer = 0.0;       ///< road-wheel angle [rad]
+    double hold = 0.0;        ///< time for which its command may act [s]
+    double doubt = 0.0;       ///< by which the arc beyond a stop may be predicted off the road [m]
+    bool goes_round = false;  ///< it turns the long way, and has to get along the road
+  };
+  /// Whether a car that creeps from `at` on stays inside the edges until it is along the road or as far from
+  /// the edge as before (eq. 6c). It comes to rest on its arc wherever it is stopped.
+  [[nodiscard]] bool creeps_inside(const road::KnownRoad& road, StopStart at, const Arc& arc) const noexcept;
   /// How much nearer to the edge [m] a car comes that stands at `at` and turns back along the road at full
   /// lock: equation 6a. 0: no nearer.
   [[nodiscard]] double turning_room(const road::KnownRoad& road, const StopStart& at) const noexcept;
@@ -123,8 +138,9 @@ class StopPlanner {
  private:
   using Here = road::KnownRoad::Here;
   // Chosen: a plan has a point for each Policy::hold, and 128 of them: 12.8 s.
-  static constexpr double kStep = 0.05;     ///< [s] of the simulation
-  static constexpr int kStepsPerPoint = 2;  ///< of the simulation, in the plan
+  static constexpr double kStep = 0.05;       ///< [s] of the simulation
+  static constexpr double kCreepDrive = 2.5;  ///< [1/s] of creeping: turned wheels resist
+  static constexpr int kStepsPerPoint = 2;    ///< of the simulation, in the plan
   /// Steps of the simulation in which a command is held.
   [[nodiscard]] static int held_steps(const Policy& policy) noexcept {
     return std::max(kStepsPerPoint, static_cast<int>(std::lround(policy.hold / kStep)));
