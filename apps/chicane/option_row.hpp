@@ -75,7 +75,7 @@ struct OptionRow {
   std::string names;       ///< names as typed: "-o,--output"; without dashes: a positional argument
   std::string_view value;  ///< name of its value, "NAME|FILE"; ends with ",..." for a list; empty: a flag
   std::string meaning;     ///< meaning for the help
-  Target to;               ///< of a std::vector or Take: may be repeated, unless is_once
+  Target to;               ///< storage of the value; a std::vector or Take may be repeated, unless is_once
   OptionRule rule{};
 
   [[nodiscard]] bool is_positional() const { return !names.starts_with('-'); }
