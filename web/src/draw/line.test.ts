@@ -1,4 +1,4 @@
-import { describe, expect, it } from 'vitest';
+import { expect, it } from 'vitest';
 import { addLine, aheadOf, type Line, lengthsOf, lineOf, longestStep, stretchesInside } from './line';
 
 /** A wave of 400 points, about 1 m apart, that enters and leaves a box often. */
@@ -15,37 +15,35 @@ function touches({ x, y }: Line, i: number): boolean {
   return false;
 }
 
-describe('a line', () => {
-  it('is left out where it is out of the picture, and nowhere else', () => {
-    const stretches = stretchesInside(wave, box, longestStep(wave));
-    expect(stretches.length).toBeGreaterThan(1);
-    const isDrawn = (i: number): boolean => stretches.some(([first, end]) => i >= first && i + 1 < end);
-    for (let i = 0; i + 1 < wave.x.length; ++i) if (touches(wave, i)) expect(isDrawn(i), `piece ${i}`).toBe(true);
-    const drawn = stretches.reduce((sum, [first, end]) => sum + end - first, 0);
-    expect(drawn).toBeLessThan(wave.x.length / 3);
-  });
+it('leaves a line out where it is out of the picture, and nowhere else', () => {
+  const stretches = stretchesInside(wave, box, longestStep(wave));
+  expect(stretches.length).toBeGreaterThan(1);
+  const isDrawn = (i: number): boolean => stretches.some(([first, end]) => i >= first && i + 1 < end);
+  for (let i = 0; i + 1 < wave.x.length; ++i) if (touches(wave, i)) expect(isDrawn(i), `piece ${i}`).toBe(true);
+  const drawn = stretches.reduce((sum, [first, end]) => sum + end - first, 0);
+  expect(drawn).toBeLessThan(wave.x.length / 3);
+});
 
-  it('is drawn whole where all of it is in the picture, and not at all where none is', () => {
-    expect(stretchesInside(wave, { minX: -1, minY: -99, maxX: 999, maxY: 99 }, 0)).toEqual([[0, 400]]);
-    expect(stretchesInside(wave, { minX: 500, minY: 500, maxX: 600, maxY: 600 }, 1)).toEqual([]);
-  });
+it('draws a line whole where all of it is in the picture, and not at all where none is', () => {
+  expect(stretchesInside(wave, { minX: -1, minY: -99, maxX: 999, maxY: 99 }, 0)).toEqual([[0, 400]]);
+  expect(stretchesInside(wave, { minX: 500, minY: 500, maxX: 600, maxY: 600 }, 1)).toEqual([]);
+});
 
-  it('knows its lengths, and its longest step', () => {
-    const line = { x: [0, 3, 3, 100], y: [0, 4, 5, 5] };
-    expect([...lengthsOf(line)]).toEqual([0, 5, 6, 103]);
-    expect(longestStep(line)).toBe(97);
-    expect(longestStep({ x: [], y: [] })).toBe(0);
-  });
+it('knows the lengths of a line, and its longest step', () => {
+  const line = { x: [0, 3, 3, 100], y: [0, 4, 5, 5] };
+  expect([...lengthsOf(line)]).toEqual([0, 5, 6, 103]);
+  expect(longestStep(line)).toBe(97);
+  expect(longestStep({ x: [], y: [] })).toBe(0);
+});
 
-  it('has a gap where it jumps', () => {
-    const calls: string[] = [];
-    const path = {
-      moveTo: (x: number) => calls.push(`move ${x}`),
-      lineTo: (x: number) => calls.push(`line ${x}`),
-    } as unknown as Path2D;
-    addLine(path, { x: [0, 1, 50, 51, 52], y: [0, 0, 0, 0, 0] }, 0, 5, 20);
-    expect(calls).toEqual(['move 0', 'line 1', 'move 50', 'line 51', 'line 52']);
-  });
+it('breaks a line where it jumps', () => {
+  const calls: string[] = [];
+  const path = {
+    moveTo: (x: number) => calls.push(`move ${x}`),
+    lineTo: (x: number) => calls.push(`line ${x}`),
+  } as unknown as Path2D;
+  addLine(path, { x: [0, 1, 50, 51, 52], y: [0, 0, 0, 0, 0] }, 0, 5, 20);
+  expect(calls).toEqual(['move 0', 'line 1', 'move 50', 'line 51', 'line 52']);
 });
 
 it('lies ahead of a pose from its first point before it on', () => {

@@ -88,14 +88,15 @@ export function raceCourses(onto: LapSamples): Course[] {
 }
 
 const POLL_MS = 200; // chosen
-const next = store.data('page', () => ({ look: undefined as ReturnType<typeof setTimeout> | undefined }));
+const next = store.data('page', () => ({ look: undefined as ReturnType<typeof setTimeout> | undefined, asked: 0 }));
 
-/** Asks the program for the race, and again as long as it goes on. */
+/** Asks the program for the race, and again as long as it goes on; passes over an answer after a later question. */
 async function look(): Promise<void> {
   clearTimeout(next.look);
-  next.look = undefined;
   if (!canRace()) return;
+  const question = ++next.asked;
   const text = await programPage('rival.json').catch(() => null);
+  if (question !== next.asked) return;
   const now = text === null ? null : readRace(JSON.parse(text));
   race.value = now === null || now.state === 'none' ? null : now;
   if (race.value) sample(race.value);
@@ -113,18 +114,16 @@ export async function startRace(chosenSettings: readonly ChosenSetting[]): Promi
   raceProblem.value = '';
   const settings = Object.fromEntries(chosenSettings.map(({ key, value }) => [key, value]));
   const answer = await ask('/rival', JSON.stringify({ settings }));
-  if (!answer.isTaken) {
-    raceProblem.value = answer.message;
-    return;
-  }
+  raceProblem.value = answer.isTaken ? '' : answer.message;
+  if (!answer.isTaken) return;
   raced.value = chosenSettings;
-  await look();
+  void look();
 }
 
 /** Ends the race; the run goes on. */
 export async function endRace(): Promise<void> {
   await ask('/rival', '{}');
-  race.value = null;
+  void look();
 }
 
 /** The run goes on with the settings of the winner, alone. */

@@ -1,19 +1,32 @@
-import { describe, expect, it } from 'vitest';
+import { expect, it } from 'vitest';
+import { restartListeners } from './demultiplexer';
 import { LapSamples } from './lap_samples';
-import { poseOf } from './rival';
+import { link, services } from './link';
+import { answerBy, pause } from './program_page';
+import { poseOf, race } from './rival';
 import { readRace, sampleRace, standingOf } from './rival_answer';
 
 const lap = (number: number, time: number, isClean = true) => ({ lap: number, time, isClean });
 const none = readRace({ state: 'racing' });
 
-describe('the standing of a race', () => {
-  it('is who drove the newest lap of both faster', () => {
-    const race = { ...none, a: [lap(1, 30), lap(2, 24), lap(3, 24)], b: [lap(1, 30), lap(2, 23.902)] };
-    expect(standingOf(race)).toEqual({ winner: 'B', text: 'Lap 2: B is 0.098 s faster.' });
-    expect(standingOf({ ...race, b: [lap(1, 29, false)] }).text).toBe('Lap 1: B is 1.000 s faster, off the road.');
-    expect(standingOf(none)).toEqual({ winner: null, text: 'No lap is driven by both yet.' });
-    expect(standingOf({ ...race, b: race.a }).winner).toBe(null);
-  });
+it('says who drove the newest lap of both faster', () => {
+  const race = { ...none, a: [lap(1, 30), lap(2, 24), lap(3, 24)], b: [lap(1, 30), lap(2, 23.902)] };
+  expect(standingOf(race)).toEqual({ winner: 'B', text: 'Lap 2: B is 0.098 s faster.' });
+  expect(standingOf({ ...race, b: [lap(1, 29, false)] }).text).toBe('Lap 1: B is 1.000 s faster, off the road.');
+  expect(standingOf(none)).toEqual({ winner: null, text: 'No lap is driven by both yet.' });
+  expect(standingOf({ ...race, b: race.a }).winner).toBe(null);
+});
+
+it('passes over an answer that a later question has overtaken', async () => {
+  const answers: ((text: string) => void)[] = [];
+  answerBy(() => new Promise((answer) => answers.push(answer)));
+  services.value = new Set(['/rival']);
+  link.value = 'live'; // asks
+  for (const listener of restartListeners) listener(); // asks again
+  answers[1]?.('{"state": "ended", "why": "newer"}');
+  answers[0]?.('{"state": "ended", "why": "older"}');
+  await pause(1);
+  expect([answers.length, race.value?.why]).toEqual([2, 'newer']);
 });
 
 it('the other car has laps along the road, from its poses', () => {
