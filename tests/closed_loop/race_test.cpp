@@ -168,6 +168,13 @@ TEST(Race, IsFasterWhereSpeedHasAWeight) {
 }
 #endif
 
+// docs/controller.md, eq. 18a: the car is valid up to 30.5 m/s, and the oval permits more.
+TEST(Race, HastensNoFurtherThanTheModelHolds) {
+  const auto run = raced("formula-student", "oval", "1");
+  EXPECT_GT(run.total.top_speed, 30.3);
+  EXPECT_LT(run.total.top_speed, 30.8);
+}
+
 TEST(Race, HastensOnlyWhereItIsWorthItAndThePlanDoesNotBrake) {
   controller::TrackingMpcOptions options;
   EXPECT_EQ(options.haste(0.0), 0.0);

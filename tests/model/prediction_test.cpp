@@ -125,6 +125,7 @@ TEST(PredictionModel, HasTheTyreCurvesOfThePlants) {
   // A magic formula without curvature.
   VehicleParams road = road_car_params();
   road.height = 0.0;  // load moved to the outer wheel costs grip
+  road.drag_quadratic = 0.0;
   const MagicFormula formula{.stiffness = road.cornering_front / (road.tire_shape * road.friction),
                              .shape = road.tire_shape,
                              .peak = road.friction};
@@ -195,7 +196,9 @@ BodyMotion<double> slipping(double slip, double acceleration) {
 }
 
 TEST(PredictionModel, LosesForceWhereAnInnerWheelGivesNoMore) {
-  const PredictionModel model(road_car_params());
+  VehicleParams free_rolling = road_car_params();
+  free_rolling.drag_constant = free_rolling.drag_quadratic = 0.0;
+  const PredictionModel model(free_rolling);
   const auto forward = [&](double slip, double net) { return model.change(slipping(slip, net)).vx; };
   EXPECT_NEAR(forward(0.0, 4.5), 4.5, 0.01) << "all wheels hold on a straight";
   EXPECT_LT(forward(0.09, 4.5), 4.4) << "an inner wheel spins in a bend";

@@ -44,7 +44,8 @@ double pole_of_model(const VehicleParams& car, const BodyMotion<double>& at) {
 }
 
 TEST(BrakingStability, HasThePolesOfThePredictionModelOnAStraight) {
-  for (const VehicleParams& car : {road_car_params(), van()}) {
+  for (VehicleParams car : {road_car_params(), van()}) {
+    car.drag_quadratic = 0.0;  // the bound does not count the load that the air's force moves
     const BrakingStability stability(car);
     for (const double v : {15.0, 30.0, 50.0}) {
       for (const double force : {0.0, 2.0, 4.0, 6.0}) {

@@ -2,6 +2,7 @@
 #include "chicane/sim/double_track.hpp"
 
 #include "chicane/base/math.hpp"
+#include "chicane/model/prediction.hpp"
 #include "sim/plant_experiment.hpp"
 #include "support/chicane_test.hpp"
 
@@ -232,6 +233,32 @@ TEST(DoubleTrack, ASmallCarWithLightWheelsRollsCalmly) {
   const auto run = experiment::drive_straight(car, 0.5, 2.0);
   for (std::size_t i = 100; i < run.size(); ++i) ASSERT_NEAR(run[i].ax, run[i - 1].ax, 0.02) << run[i].time;
   EXPECT_NEAR(run.back().ax, longitudinal_acceleration(model_of(params), 0.5, run.back().speed), 0.05);
+}
+
+// docs/controller.md, eq. 4g, and the force against the air.
+TEST(DoubleTrack, ResistanceTurnsModelAndCarAlike) {
+  constexpr double kSpeed = 30.0, kSteer = 0.005;
+  const auto yaw_rates = [](double rolling, double drag) {
+    DoubleTrackParams params;
+    params.rolling_resistance = rolling;
+    params.drag = drag;
+    params.drive_share_front = 0.0;
+    DoubleTrack car(params);
+    const model::PredictionModel model(model_of(params));
+    model::BodyMotion<double> body{kSpeed, 0.0, 0.0, kSteer, 0.0};
+    for (int i = 0; i < 1000; ++i) {
+      body = model.advance(body, kSteer, 0.0, 0.01, model.lags(0.01));
+      body.vx = kSpeed;
+    }
+    return std::pair{experiment::steady_circle(car, kSteer, kSpeed).yaw_rate, body.r};
+  };
+  const auto [free_car, free_model] = yaw_rates(0.0, 0.0);
+  const auto [rolling_car, rolling_model] = yaw_rates(0.1, 0.0);
+  EXPECT_LT(rolling_car / free_car, 0.9);
+  EXPECT_NEAR(rolling_model / free_model, rolling_car / free_car, 0.01);
+  const auto [blown_car, blown_model] = yaw_rates(0.0, 3.0);
+  EXPECT_GT(blown_car / free_car, 1.05);
+  EXPECT_NEAR(blown_model / free_model, blown_car / free_car, 0.01);
 }
 
 }  // namespace

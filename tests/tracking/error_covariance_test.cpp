@@ -113,6 +113,24 @@ TEST(ErrorCovariance, IsMirrored) {
   }
 }
 
+// Where a car whose rear tyres slide is unstable, a matrix that is not symmetric becomes less so.
+TEST(ErrorCovariance, ForgetsThatTheCarHasSlid) {
+  constexpr Errors::Slopes kSliding{0.995, -0.362, -0.004, 0.994}, kGripping{0.953, -0.384, 0.002, 0.957};
+  constexpr int kInterval = 4;  // steps of 0.01 s
+  ErrorCovariance slid, calm;
+  for (ErrorCovariance* each : {&slid, &calm}) each->estimate_disturbance(true);
+  const auto advance = [](ErrorCovariance& each, const Errors::Slopes& slopes, double time) {
+    for (int i = 0; i < static_cast<int>(time / (0.01 * kInterval)); ++i) {
+      for (int k = 0; k < kInterval; ++k) each.advance(0.01, 38.0, slopes, 0.98);
+      each.correct({0.0, 0.0, false});
+    }
+  };
+  advance(slid, kSliding, 20.0);
+  for (ErrorCovariance* each : {&slid, &calm}) advance(*each, kGripping, 20.0);
+  const Vector a = slid.correct({1e-3, 1e-3, false}), b = calm.correct({1e-3, 1e-3, false});
+  for (std::size_t q = 0; q < a.size(); ++q) EXPECT_NEAR(a[q], b[q], 1e-9 + 1e-6 * std::fabs(b[q])) << q;
+}
+
 TEST(ErrorCovariance, CorrectsByTheHeadingAloneWhereThePlaceIsMissing) {
   ErrorCovariance covariance;
   covariance.advance(kStep, kSpeed, kSlopes, kFading);

@@ -348,6 +348,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     road::ReferenceLine::Demand demand = line().demand(s_ + s);
     double haste = options_.haste(demand.speed * demand.speed_slope);
     if (!road_.is_raced() || k == problem_.horizon || demand.speed < kCrawl) haste = 0.0;
+    haste = std::clamp(model_.vehicle().valid_speed - demand.speed, 0.0, haste);
     if (const double stop = stopping_speed(s); stop < demand.speed) {
       demand.speed = stop;
       demand.speed_slope = haste = 0.0;

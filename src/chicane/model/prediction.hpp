@@ -44,6 +44,7 @@ class PredictionModel {
     per_peak_ = per_peak(vehicle);
     unloading_front_ = unloading(vehicle, vehicle.rear_axle, vehicle.roll_share_front);
     unloading_rear_ = unloading(vehicle, vehicle.front_axle, 1.0 - vehicle.roll_share_front);
+    rolling_ = std::max(vehicle.drag_constant - vehicle.drag_driven, 0.0) / vehicle.load_constant;
   }
 
   /// Share of the difference between present and commanded value that a first-order lag leaves.
@@ -84,7 +85,7 @@ class PredictionModel {
     const T a21 = turn * moment;
     const T a22 = 1.0 + turn * damping;
     // Drive and brake force of the front wheels point along the wheels, and so also to the side.
-    const T force = (kf + front_force<false>(acceleration)) * steer;
+    const T force = (kf + front_force<false>(T(acceleration + tires.air))) * steer;
     const T b1 = from.vy + dt * force;
     const T b2 = from.r + (turn * a) * force + turn * tires.twist;
     const T det = a11 * a22 - a12 * a21;
@@ -129,7 +130,7 @@ class PredictionModel {
     const Tires<T> tires = tire_state<true>(at, at.steer);
     const T front = tires.stiffness_front * (at.steer - (at.vy + p.front_axle * at.r) * tires.inverse_speed);
     const T rear = tires.stiffness_rear * ((p.rear_axle * at.r - at.vy) * tires.inverse_speed);
-    const T pull = front_force<true>(at.acceleration) * at.steer;
+    const T pull = front_force<true>(T(at.acceleration + tires.air)) * at.steer;
     const T turn = (1.0 - p.steer_helper) * at.r;
     return {
         .vx = at.acceleration - tires.lost + turn * at.vy - front * at.steer,
@@ -164,7 +165,7 @@ class PredictionModel {
     const Tires<double> tires = tire_state<false>(m, m.steer);
     const double rear = tires.stiffness_rear * (p.rear_axle * m.r - m.vy) * tires.inverse_speed;
     const double wanted = (p.yaw_inertia / p.mass * yaw_acceleration + p.rear_axle * rear) / p.front_axle -
-                          front_force<false>(m.acceleration) * m.steer;
+                          front_force<false>(m.acceleration + tires.air) * m.steer;
     const double most = p.friction / p.cornering_front * std::min(1.0 / per_peak_, kMostSlip);
     const double slip = wanted / tires.stiffness_front;
     return (slip < -most  ? -most
@@ -196,7 +197,8 @@ class PredictionModel {
     T along_front, along_rear;          ///< longitudinal force over peak force
     T stiffness_front, stiffness_rear;  ///< secant stiffness per mass, k in eq. 1–3 [m/s²]
     T lost;                             ///< acceleration lost to spinning wheels or anti-lock [m/s²]
-    T twist;                            ///< yaw moment by that loss, over mass [m²/s²]
+    T twist;                            ///< yaw moment by that loss and by rolling, over mass [m²/s²]
+    T air;                              ///< acceleration that the tyres give against the air [m/s²]
   };
 
   /// Lag of a time constant [s] over a step of dt [s].
@@ -252,14 +254,16 @@ class PredictionModel {
                             };
       axle(p.cornering_front, slip_front, grip_front * load_front, t.square_front, t.stiffness_front);
       axle(p.cornering_rear, slip_rear, grip_rear * load_rear, t.square_rear, t.stiffness_rear);
-      t.along_front = t.along_rear = t.lost = t.twist = T(0.0);
+      t.along_front = t.along_rear = t.lost = t.twist = t.air = T(0.0);
       return t;
     }
 
     // Lateral acceleration by the tyres (eq. 4d), with equal loads of both wheels of an axle. It differs from
     // v_x r while the slip angle of the car changes.
-    const T drive = positive<kSmooth>(m.acceleration, kBlend);
-    const T brake = drive - m.acceleration;
+    t.air = (p.drag_linear + p.drag_quadratic * speed) * speed;
+    const T force = m.acceleration + t.air;
+    const T drive = positive<kSmooth>(force, kBlend);
+    const T brake = drive - force;
     const T pulls[2] = {T(p.drive_share_front * drive + p.brake_share_front * brake),
                         T((1.0 - p.drive_share_front) * drive + (1.0 - p.brake_share_front) * brake)};
     const T slips[2] = {(p.cornering_front * per_friction) * slip_front,
@@ -270,13 +274,14 @@ class PredictionModel {
       const T use_along = per_friction * pull / load;
       return p.friction * load * z * secant * sqrt(least<kSmooth>(T(1.0 - use_along * use_along)));
     };
-    const T sideways = rest * (lateral(slips[0], across[0], T(grip_front * load_front), pulls[0]) +
-                               lateral(slips[1], across[1], T(grip_rear * load_rear), pulls[1]));
+    const T by_tires = lateral(slips[0], across[0], T(grip_front * load_front), pulls[0]) +
+                       lateral(slips[1], across[1], T(grip_rear * load_rear), pulls[1]);
+    const T sideways = rest * by_tires;
     const T side = 2.0 * positive<kSmooth>(sideways, kBlend) - sideways;
 
     // Both wheels of an axle have its slip angle and half its longitudinal force, and loads of their own.
     // `driving` is 1 while the inner wheel may spin, and 0 while braking, when anti-lock prevents it.
-    const T driving = 0.5 + 0.5 * m.acceleration / sqrt(m.acceleration * m.acceleration + kBlend * kBlend);
+    const T driving = 0.5 + 0.5 * force / sqrt(force * force + kBlend * kBlend);
     struct LoadedAxle {
       double cornering, unloading, rest;
       T z2, across2, part, grip, pull;
@@ -319,9 +324,11 @@ class PredictionModel {
     t.along_rear = axles[1].along;
     t.stiffness_front = axles[0].stiffness;
     t.stiffness_rear = axles[1].stiffness;
-    const T sign = select(m.acceleration < 0.0, T(-1.0), T(1.0));
+    const T sign = select(force < 0.0, T(-1.0), T(1.0));
     t.lost = sign * (lost[0] + lost[1]);
-    t.twist = (0.5 * p.track_width) * sign * (sideways / (side + kLeastSide)) * (lost[0] - lost[1]);
+    // The loaded outer wheels roll with more resistance.
+    t.twist = (0.5 * p.track_width) * sign * (sideways / (side + kLeastSide)) * (lost[0] - lost[1]) -
+              (p.height * rolling_) * by_tires;
     return t;
   }
 
@@ -347,11 +354,11 @@ class PredictionModel {
       return positive_part(x);
     }
   }
-  /// Drive and brake force of the front wheels over the car's mass, at a net acceleration [m/s²].
+  /// Drive and brake force of the front wheels, of all wheels' `force`; both over the car's mass [m/s²].
   template <bool kSmooth, class T>
-  [[nodiscard]] CHICANE_INLINE inline T front_force(const T& acceleration) const noexcept {
-    const T drive = positive<kSmooth>(acceleration, kBlend);
-    return vehicle_.drive_share_front * drive + vehicle_.brake_share_front * (acceleration - drive);
+  [[nodiscard]] CHICANE_INLINE inline T front_force(const T& force) const noexcept {
+    const T drive = positive<kSmooth>(force, kBlend);
+    return vehicle_.drive_share_front * drive + vehicle_.brake_share_front * (force - drive);
   }
   /// max(share, kLeastLoad) of a wheel's load at rest, exact or smooth within about kSmoothLoad.
   template <bool kSmooth, class T>
@@ -382,6 +389,7 @@ class PredictionModel {
   static constexpr double kBlend = 0.3;                  ///< width between drive and brakes [m/s²]
   static constexpr double kSmoothLoad = 0.05;            ///< width at kLeastLoad, share of the load at rest
   double unloading_front_ = 0.0, unloading_rear_ = 0.0;  ///< unloading() of the axles [s²/m]
+  double rolling_ = 0.0;                                 ///< resistance of rolling wheels over their load
   double per_peak_ = 1.0;                                ///< per_peak()
   model::VehicleParams vehicle_;
 };

@@ -61,6 +61,8 @@ void ErrorCovariance::advance(double dt, double speed, const Slopes& slopes, dou
     Vector column;
     for (std::size_t i = 0; i < kStates; ++i) column[i] = half[i][j];
     p_[j] = step(column);
+    // Asymmetry by rounding grows without bound while the car is unstable.
+    for (std::size_t i = 0; i < j; ++i) p_[i][j] = p_[j][i];
   }
   const double lateral = aside_.model * aside_.model, yaw = heading_.model * heading_.model;
   if (is_disturbed_) {

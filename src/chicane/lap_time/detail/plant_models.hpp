@@ -365,7 +365,7 @@ struct VehicleModel {
     *out++ = 0.2 * (car.drive_acceleration - force);
     *out++ = 0.2 * (std::min(car.drive_power_per_mass, kMostPower) / vx - force);
     *out++ = 0.1 * (force + brake_share * car.brake_throttle_limit * car.brake_acceleration);
-    const T slip = slip_share * (1.0 - (is_steered_slowly ? kSlipPerSpeedSlow : kSlipPerSpeed) * vx);
+    const T slip = slip_share * (1.0 - kSlipPerSpeed * vx);
     const T share = slides ? model::SlidingBound::share(vx) : T(0.0);
     const T front = slip + share * (slip_share * sliding.front() - slip);
     const T rear = slip + share * (slip_share * sliding.rear(vx) - slip);
@@ -396,8 +396,6 @@ struct VehicleModel {
   /// Decrease of slip_share with speed [s/m]: at speed yaw is damped less, and the car covers more road
   /// before a command acts. Three quarters are left at 50 m/s.
   static constexpr double kSlipPerSpeed = 0.005;
-  /// Share for cars with slow steering: with 0.005 `vw-vanagon` and `tum-1200` spin in bends of 35 to 45 m/s.
-  static constexpr double kSlipPerSpeedSlow = 0.01;
 };
 
 }  // namespace chicane::lap_time
