@@ -3,12 +3,12 @@
 that once ended in a wrong guess or in a message that did not help. Inputs that are not made here lie in tests/apps/edges (made up, like
 files of the wild)."""
 import csv
+import functools
 import os
 import re
 import signal
 import sqlite3
 import subprocess
-import sys
 import tempfile
 import time
 import unittest
@@ -16,21 +16,13 @@ import urllib.error
 import urllib.request
 from pathlib import Path
 
+import program
 from edge_sockets import Bicycle, Controller, WebSocket, steering_of, telemetry
+from program import ENVIRONMENT, PROGRAM
 
-PROGRAM = sys.argv.pop(1)
-HERE = Path(__file__).resolve().parent
-DATA = HERE / "edges"
+DATA = program.ROOT / "tests/apps/edges"
+run = functools.partial(program.run, cwd=DATA)
 MODEL = ["--car", "f1tenth"]
-
-
-def environment():
-    return {**os.environ, "CHICANE_DATA_DIR": str(HERE.parent.parent / "data")}
-
-
-def run(*words, cwd=DATA):
-    done = subprocess.run([PROGRAM, *map(str, words)], cwd=cwd, env=environment(), capture_output=True, text=True, timeout=120)
-    return done.returncode, done.stdout, done.stderr
 
 
 class Serving:
@@ -39,7 +31,7 @@ class Serving:
     def __init__(self, *words, address="127.0.0.1", latency_ms=0):
         self.file = tempfile.NamedTemporaryFile("w+", suffix=f".{os.getpid()}", delete=False)
         self.process = subprocess.Popen([PROGRAM, "serve", "--latency-ms", str(latency_ms), "--port", "0", "--address", address, *words],
-                                        cwd=DATA, env=environment(), stdout=subprocess.DEVNULL, stderr=self.file)
+                                        cwd=DATA, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=self.file)
         self.wait_for("waits for")
         self.port = int(re.search(r"port (\d+)", self.said())[1])
 
@@ -79,27 +71,18 @@ def stadium(radius, length=6.0, step=0.1, half_width=0.55):
     return "x_m,y_m,w_tr_right_m,w_tr_left_m\n" + "".join(f"{x:.4f},{y:.4f},{half_width},{half_width}\n" for x, y in points)
 
 
-class Files(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory(suffix=f".{os.getpid()}")
-        self.addCleanup(self.folder.cleanup)
-
+class Files(program.InFolder):
     def file(self, name, text):
-        path = Path(self.folder.name) / name
+        path = self.at / name
         path.write_text(text)
         return path
 
-    def assert_refused(self, file, *parts, words=()):
-        code, out, err = run("check", file, *words)
-        self.assertEqual(code, 2, f"{out}{err}")
+    def assert_said(self, code, file, *parts, words=()):
+        """What `check` says of a file, with these parts; its warnings."""
+        got, out, err = run("check", file, *words)
+        self.assertEqual(got, code, f"{out}{err}")
         for part in parts:
-            self.assertIn(part, err)
-
-    def assert_read(self, file, *parts, words=()):
-        code, out, err = run("check", file, *words)
-        self.assertEqual(code, 0, f"{out}{err}")
-        for part in parts:
-            self.assertIn(part, out + err)
+            self.assertIn(part, err if code else out + err)
         return err
 
     # 7. Warnings of readers reach people, by each command and as JSON.
@@ -125,14 +108,14 @@ class Files(unittest.TestCase):
 
     # 8. Guesses.
     def test_cone_maps_are_named(self):
-        self.assert_refused("07_cones.csv", "07_cones.csv: cones: got sides that cross each other, expected a course between them")
-        self.assert_read("07_timestamped.csv", "stamp: unknown column, ignored")
-        self.assert_refused(self.file("cones.csv", "x,y,color\n" + ring(lambda x, y: f"{x},{y},big_orange")), "cones: got 0 of the left side and 0 of the right one, expected at least 3 of each")
+        self.assert_said(2, "07_cones.csv", "07_cones.csv: cones: got sides that cross each other, expected a course between them")
+        self.assert_said(0, "07_timestamped.csv", "stamp: unknown column, ignored")
+        self.assert_said(2, self.file("cones.csv", "x,y,color\n" + ring(lambda x, y: f"{x},{y},big_orange")), "cones: got 0 of the left side and 0 of the right one, expected at least 3 of each")
 
     # 10. Lengths of model scale.
     def test_a_file_has_the_size_that_it_says(self):
-        self.assertEqual(self.assert_read("28_rect_0.7.csv", "at least 2.00 m wide", words=MODEL), "", "nothing was assumed")
-        self.assert_refused("28_rect_0.7.csv", "a road of model size needs a model car: --car f1tenth")
+        self.assertEqual(self.assert_said(0, "28_rect_0.7.csv", "at least 2.00 m wide", words=MODEL), "", "nothing was assumed")
+        self.assert_said(2, "28_rect_0.7.csv", "a road of model size needs a model car: --car f1tenth")
         code, _, err = run("check", "--car", "f1tenth", "--track", "28_rect_0.7.csv", "--set", "track_scale=0.1")
         self.assertEqual(code, 2)
         self.assertIn("track_scale: got 0.1 with the file", err)
@@ -143,13 +126,13 @@ class Files(unittest.TestCase):
             radius = float(re.search(r"tightest radius ([\d.]+) m", out + err)[1])
             self.assertAlmostEqual(radius, 0.7, delta=0.08)
         file = self.file("ring.csv", "x,y\n" + ring(lambda x, y: f"{0.1 * x},{0.1 * y}"))
-        self.assert_read(file, "0.45 m left and 0.45 m right assumed", words=MODEL)
+        self.assert_said(0, file, "0.45 m left and 0.45 m right assumed", words=MODEL)
 
     def test_more_room_leaves_no_smaller_radius(self):
         for room in (3, 6, 10, 20):
             words = [*MODEL, "--set", f"tracking_mpc.assumed_half_width_m={room}"]
             for file in ("23_rect_0.6.csv", self.file("u.csv", stadium(0.6)), self.file("wide.csv", stadium(0.7, half_width=0.65))):
-                self.assert_read(file, "ok", words=words)
+                self.assert_said(0, file, "ok", words=words)
 
     def test_a_parked_car_is_named(self):
         for file in ("22_hair_0.75.csv", self.file("tight.csv", stadium(0.65)), self.file("open.csv", stadium(0.9))):
@@ -159,7 +142,7 @@ class Files(unittest.TestCase):
 
     # 11. Nothing is no success.
     def test_bags_of_other_programs(self):
-        page = Path(self.folder.name) / "page.html"
+        page = self.at / "page.html"
         for words in (("report", "24_foreign.mcap", "-o", page), ("replay", "--port", "0", "24_foreign.mcap")):
             code, _, err = run(*words)
             self.assertEqual(code, 2, err)
@@ -167,16 +150,16 @@ class Files(unittest.TestCase):
         self.assertFalse(page.exists())
 
     def test_bags_without_a_way(self):
-        inertial = Path(self.folder.name) / "inertial.db3"
+        inertial = self.at / "inertial.db3"
         with sqlite3.connect(inertial) as bag:
             bag.executescript("""
                 create table topics(id integer primary key, name text, type text, serialization_format text, offered_qos_profiles text);
                 create table messages(id integer primary key, topic_id integer, timestamp integer, data blob);
                 insert into topics values(1, '/imu', 'sensor_msgs/msg/Imu', 'cdr', '');
                 insert into messages values(1, 1, 1000000000, x'0001');""")
-        begun = Path(self.folder.name) / "begun.mcap"
+        begun = self.at / "begun.mcap"
         begun.write_bytes((DATA / "24_foreign.mcap").read_bytes()[:300])
-        page = Path(self.folder.name) / "page.html"
+        page = self.at / "page.html"
         for bag, why in ((inertial, "got the topics none of nav_msgs/msg/Odometry, expected one"),
                          (begun, "got a file that was cut in its first chunk, expected a recording of ours, or a bag")):
             for words in (("report", bag, "-o", page), ("replay", "--port", "0", bag)):
@@ -186,7 +169,7 @@ class Files(unittest.TestCase):
         self.assertFalse(page.exists())
 
     def assert_ended_while_planning(self, how, *words):
-        process = subprocess.Popen([PROGRAM, *map(str, words)], cwd=DATA, env=environment(), stdout=subprocess.DEVNULL,
+        process = subprocess.Popen([PROGRAM, *map(str, words)], cwd=DATA, env=ENVIRONMENT, stdout=subprocess.DEVNULL,
                                    stderr=subprocess.DEVNULL, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_IGN))
         time.sleep(0.3)
         process.send_signal(how)
@@ -195,7 +178,7 @@ class Files(unittest.TestCase):
 
     def test_a_run_with_a_dashboard_goes_on_until_it_is_stopped(self):
         process = subprocess.Popen([PROGRAM, "drive", "--port", "0", "--track", "oval", "--preset", "pid"], cwd=DATA, text=True, stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE, env={**environment(), "CHICANE_COMMAND": "./run.sh"})
+                                   stderr=subprocess.PIPE, env={**ENVIRONMENT, "CHICANE_COMMAND": "./run.sh"})
         said = ""
         while "dashboard at" not in said:
             said = process.stderr.readline()
@@ -206,12 +189,8 @@ class Files(unittest.TestCase):
         self.assertIn("laps until stopped", process.communicate(timeout=30)[0])
 
     def test_a_scenario_with_laps_ends_where_nobody_watches(self):
-        with tempfile.TemporaryDirectory() as folder:
-            file = Path(folder) / "one_lap.yaml"
-            file.write_text("track: oval\nlaps: 1\n")
-            done = subprocess.run([PROGRAM, "drive", file, "--port", "0", "--pace", "20"], cwd=DATA, text=True, capture_output=True, timeout=60,
-                                  env=environment())
-        self.assertEqual((done.returncode, done.stdout.splitlines()[-1][:11]), (0, "1 of 1 laps"))
+        code, out, _ = run("drive", self.file("one_lap.yaml", "track: oval\nlaps: 1\n"), "--port", "0", "--pace", "20")
+        self.assertEqual((code, out.splitlines()[-1][:11]), (0, "1 of 1 laps"))
 
     def test_ctrl_c_ends_planning(self):
         race = ("drive", "--fast", "--laps", "1", "--preset", "race")

@@ -5,31 +5,16 @@ import os
 import re
 import subprocess
 import sys
-import tempfile
 import unittest
-from pathlib import Path
 
-PROGRAM = sys.argv.pop(1)
-ROOT = Path(__file__).resolve().parent.parent.parent
+from program import ROOT, InFolder, run
+
 TRACKS, MAPS = ROOT / "tests/data/tracks", ROOT / "tests/data/maps"
 
 
-def run(*words):
-    environment = {**os.environ, "CHICANE_DATA_DIR": str(ROOT / "data")}
-    done = subprocess.run([PROGRAM, *map(str, words)], env=environment, capture_output=True, text=True, timeout=120)
-    return done.returncode, done.stdout, done.stderr
-
-
-class Import(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory(suffix=f".{os.getpid()}")
-        self.out = Path(self.folder.name)
-
-    def tearDown(self):
-        self.folder.cleanup()
-
+class Import(InFolder):
     def test_a_map_becomes_a_picture_and_a_road_that_is_driven(self):
-        road, page = self.out / "bean.csv", self.out / "bean.html"
+        road, page = self.at / "bean.csv", self.at / "bean.html"
         code, printed, err = run("import", MAPS / "bean.yaml", "-o", road, "--preview", page)
         self.assertEqual(code, 0, err)
         self.assertTrue(printed.endswith(f"chicane drive --track {road} --car f1tenth\n"), printed)
@@ -54,12 +39,12 @@ class Import(unittest.TestCase):
 
     def test_bags_of_other_programs_are_reported_by_file_and_by_folder(self):
         bag = ROOT / "tests/fuzz/corpus/bag/plain.db3"
-        folder = self.out / "bag"
+        folder = self.at / "bag"
         folder.mkdir()
         (folder / "bag_0.db3").write_bytes(bag.read_bytes())
         (folder / "metadata.yaml").write_text("rosbag2_bagfile_information:\n")
         for log in (bag, folder):
-            page = self.out / f"{log.name}.html"
+            page = self.at / f"{log.name}.html"
             code, _, err = run("report", log, "-o", page)
             self.assertEqual(code, 0, err)
             self.assertIn("</html>", page.read_text())
@@ -70,15 +55,15 @@ class Import(unittest.TestCase):
 
     # rosbag2 writes MCAP or SQLite: the same run is the same page.
     def test_a_bag_shows_the_same_run_in_either_storage(self):
-        recording = self.out / "run.mcap"
+        recording = self.at / "run.mcap"
         code, _, err = run("drive", "--fast", "--track", "oval", "--laps", "2", "--record", recording)
         self.assertEqual(code, 0, err)
         pages = {}
         for storage in ("sqlite3", "mcap"):
-            bag = self.out / storage / "bag"
+            bag = self.at / storage / "bag"
             bag.parent.mkdir()
             subprocess.run([sys.executable, ROOT / "tools/make_bag.py", recording, bag, "--storage", storage], check=True, capture_output=True)
-            page = self.out / f"{storage}.html"
+            page = self.at / f"{storage}.html"
             code, out, err = run("report", bag, "--track", "oval", "-o", page)
             self.assertEqual(code, 0, err)
             pages[storage] = page.read_text()
@@ -86,10 +71,10 @@ class Import(unittest.TestCase):
         self.assertEqual(pages["sqlite3"], pages["mcap"])
 
     def test_what_is_refused_is_not_written(self):
-        code, out, err = run("import", TRACKS / "no_loop.yaml", "-o", self.out / "none.csv")
+        code, out, err = run("import", TRACKS / "no_loop.yaml", "-o", self.at / "none.csv")
         self.assertEqual((code, out), (2, ""))
         self.assertIn("no_loop.yaml: free space: got no loop, open between (", err)
-        self.assertFalse((self.out / "none.csv").exists())
+        self.assertFalse((self.at / "none.csv").exists())
 
 
 if __name__ == "__main__":

@@ -1,35 +1,18 @@
 # SPDX-License-Identifier: MIT
 """Typical mistakes and what the program says to them: `mistakes_test.py PROGRAM`. Each message names the place, what was got, what is
 expected and, where that is not the expectation itself, what to do. `{name}`: a file of that content."""
-import os
 import shlex
-import subprocess
-import sys
-import tempfile
 import unittest
-from pathlib import Path
 
-PROGRAM = sys.argv.pop(1)
-ROOT = Path(__file__).resolve().parent.parent.parent
+from program import InFolder, run
+
 USAGE = "--help`"
 
 FILES = {
     "three.csv": "x_m,y_m\n0,0\n50,0\n25,40\n",
-    "four.csv": "0,0,18.3,30\n2,0,18.3,30\n4,0,18.3,30\n4,4,18.3,30\n",
-    "names.csv": "# v_mps, ax_mps2_max\n0,9\n1,8\n2,7\n3,6\n",
-    "nan.csv": "x_m,y_m\nnan,0\n0,50\n50,50\n50,0\n",
-    "width.csv": "x_m,y_m,w_tr_right_m,w_tr_left_m\n0,0,4,4\n50,0,4,-4\n50,50,4,4\n0,50,4,4\n",
-    "gps.csv": "lat,lon\n48.1,11.5\n48.2,11.6\n",
     "commas.csv": "x_m;y_m\n1,000.5;0\n50;0\n50;50\n",
-    "cones.csv": "tag,x,y\nblue,0,0\nyellow,5,0\n",
     "key.yaml": "preset: default\ntracking_mpc:\n  horizon_stepz: 12\n",
-    "range.yaml": "preset: default\ntracking_mpc:\n  horizon_steps: 900\n",
-    "twice.yaml": "laps: 1\nlaps: 2\n",
-    "tab.yaml": "pid:\n\tproportional_gain: 1\n",
     "track.yaml": "track: lakesite\n",
-    "car.yaml": "plant: udacity\nvehicle:\n  mass_kg: -900\n",
-    "fault.yaml": "faults:\n  - {name: half_gripp, at_s: 3}\n",
-    "empty.csv": "",
     "text.mcap": "not a recording\n",
 }
 
@@ -90,21 +73,9 @@ completion ksh | shell | got ksh | expected one of bash, zsh, fish | {USAGE}
 check | check | got nothing | expected files or settings |
 check missing.csv | track | got missing.csv | expected a file that exists |
 check {{three.csv}} | three.csv: points | got 3 with 3 different | expected at least 4 different ones |
-check {{four.csv}} | four.csv:1: header | got none for 4 columns | expected a line that names them | x_m,y_m,w_tr_right_m,w_tr_left_m
-check {{names.csv}} | names.csv:1: header | got v_mps | expected columns x and y |
-check {{nan.csv}} | nan.csv:2: x_m | got nan | expected a finite number |
-check {{width.csv}} | width.csv:3: w_tr_left_m | got -4 | expected a width > 0 |
-check {{gps.csv}} | gps.csv:1: header | got lat,lon | expected columns x and y (or x_m and y_m) in metres |
 check {{commas.csv}} | commas.csv:2: x_m | got 1,000.5 | expected a finite number with a decimal point |
-check {{cones.csv}} | cones.csv: cones | got 1 of the left side and 1 of the right one | expected at least 3 of each |
-check {{empty.csv}} | empty.csv: file | got no points | expected lines of numbers |
 check {{key.yaml}} | key.yaml:3: tracking_mpc.horizon_stepz | got an unknown key | expected one of | (did you mean tracking_mpc.horizon_steps?)
-check {{range.yaml}} | range.yaml:3: tracking_mpc.horizon_steps | got 900 | expected an integer in [5, 100] |
-check {{twice.yaml}} | twice.yaml:2: laps | got it a second time | expected it once | (first on line 1)
-check {{tab.yaml}} | tab.yaml:2 | got | expected |
 check {{track.yaml}} | track.yaml:1: track | got "lakesite" | expected a file or one of | (did you mean lakeside?)
-check {{car.yaml}} | car.yaml:3: vehicle.mass_kg | got | expected |
-check {{fault.yaml}} | fault.yaml:2: faults.name | got half_gripp | expected one of `chicane list faults` |
 tune --evaluations many | --evaluations | got many | expected a whole number in [1, 10000000] | {USAGE}
 campaign --faults foo | --faults | got foo | expected one of `chicane list faults` |
 drive --fast --set mass=900 | mass | got an unknown key | expected one of `chicane list parameters` | (did you mean vehicle.mass_kg?)
@@ -113,20 +84,17 @@ lane-change --car f1tenth | chicane lane-change | got --car | expected one of it
 """.splitlines()]
 
 
-class Mistakes(unittest.TestCase):
+class Mistakes(InFolder):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(suffix=f".{os.getpid()}")
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
+        super().setUp()
         for name, text in FILES.items():
-            (self.folder / name).write_text(text)
+            (self.at / name).write_text(text)
 
     def said(self, command):
         words = [word.strip("{}") if word.startswith("{") else word for word in shlex.split(command)]
-        done = subprocess.run([PROGRAM, *words], cwd=self.folder, capture_output=True, text=True, timeout=60,
-                              env={**os.environ, "CHICANE_DATA_DIR": str(ROOT / "data")})
-        self.assertEqual(done.stdout if done.returncode == 2 else "", "")
-        return done.returncode, done.stderr
+        code, out, err = run(*words, cwd=self.at)
+        self.assertEqual(out if code == 2 else "", "")
+        return code, err
 
     def test_each_is_named_with_its_remedy(self):
         self.assertGreaterEqual(len(MISTAKES), 50)
@@ -134,7 +102,7 @@ class Mistakes(unittest.TestCase):
             with self.subTest(command):
                 code, err = self.said(command)
                 self.assertEqual(code, 2, err)
-                message = err.replace(f"{self.folder}/", "")
+                message = err.replace(f"{self.at}/", "")
                 for part in (place.strip(), got.strip(), expected.rstrip(" |"), *(part.rstrip(" |") for part in remedy)):
                     self.assertIn(part, message)
                 for raw in ("Could not convert", "1 required", "not in range", "At Most", "requires", "excludes", "{false}"):
@@ -142,12 +110,10 @@ class Mistakes(unittest.TestCase):
 
     def test_help_has_no_raw_words(self):
         for command in ("drive", "serve", "replay", "league"):
-            code, _ = self.said(f"{command} --help")
+            code, text, _ = run(command, "--help")
             self.assertEqual(code, 0)
-            text = subprocess.run([PROGRAM, command, "--help"], capture_output=True, text=True, timeout=60).stdout
             self.assertNotIn("{false}", text)
-        text = subprocess.run([PROGRAM, "replay", "--help"], capture_output=True, text=True, timeout=60).stdout
-        self.assertIn("-o,--output", text)
+        self.assertIn("-o,--output", run("replay", "--help")[1])
 
 
 if __name__ == "__main__":

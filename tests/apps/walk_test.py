@@ -16,10 +16,10 @@ import unittest
 import zlib
 from pathlib import Path
 
-PROGRAM = sys.argv.pop(1)
-HERE = Path(__file__).resolve().parent
+from program import ROOT, InFolder, run
+
+HERE = ROOT / "tests/apps"
 EDGE_M = 0.02  # by which a car that is raced by a model found from a bag may leave its road
-ROOT = HERE.parent.parent
 PAGE = ROOT / "docs/tracks.md"
 MODEL = {"car": "team-1-10", "start": "f1tenth", "cell": 0.05, "width": 1.9, "laps": "3", "grip_share": "1",
          "corners": [(0, 0), (5, 0), (9, 2), (9, 6), (6, 8), (3, 6.2), (0, 6.2), (-3, 8), (-6, 6), (-6, 2), (-3, 0)],
@@ -27,12 +27,6 @@ MODEL = {"car": "team-1-10", "start": "f1tenth", "cell": 0.05, "width": 1.9, "la
 FULL = {"car": "team-coupe", "start": "road-car", "cell": 0.25, "width": 9.0, "laps": "2", "grip_share": "1",
         "corners": [(0, 0), (55, 0), (85, 18), (70, 45), (95, 70), (70, 95), (30, 80), (5, 95), (-35, 85), (-45, 45), (-25, 5)],
         "noise": ("--position-noise-m", "0.03", "--heading-noise-deg", "0.2", "--speed-noise-mps", "0.05")}
-
-
-def program(*words, folder):
-    environment = {**os.environ, "CHICANE_DATA_DIR": str(ROOT / "data")}
-    done = subprocess.run([PROGRAM, *map(str, words)], cwd=folder, env=environment, capture_output=True, text=True, timeout=300)
-    return done.returncode, done.stdout, done.stderr
 
 
 def smooth(corners, parts=60):
@@ -83,8 +77,8 @@ def record_bag(folder, road, *more):
     """The team drives its car, and keeps odometry and commands."""
     with tempfile.TemporaryDirectory(suffix=f".{os.getpid()}") as away:
         recording = Path(away) / "run.mcap"
-        code, out, err = program("drive", "--fast", "--car", HERE / "walk" / f"{road['car']}.yaml", "--track", "map.yaml", "--laps", road["laps"],
-                                 "--set", "tracking_mpc.grip_share=" + road["grip_share"], "--record", recording, "--json", *more, folder=folder)
+        code, out, err = run("drive", "--fast", "--car", HERE / "walk" / f"{road['car']}.yaml", "--track", "map.yaml", "--laps", road["laps"],
+                             "--set", "tracking_mpc.grip_share=" + road["grip_share"], "--record", recording, "--json", *more, cwd=folder)
         if code not in (0, 1):
             raise AssertionError(err)
         make_bag(recording, folder / "bag", *road["noise"])
@@ -111,16 +105,9 @@ def settings_of(car):
     return words
 
 
-class Walk(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory(suffix=f".{os.getpid()}")
-        self.at = Path(self.folder.name)
-
-    def tearDown(self):
-        self.folder.cleanup()
-
+class Walk(InFolder):
     def race(self, *words):
-        code, out, err = program("drive", "--fast", "--laps", "2", "--preset", "race", "--json", *words, folder=self.at)
+        code, out, err = run("drive", "--fast", "--laps", "2", "--preset", "race", "--json", *words, cwd=self.at)
         self.assertIn(code, (0, 1), err)
         result = json.loads(out)
         edge = min((lap["min_edge_distance_m"] for lap in result["laps"]), default=-1.0)
@@ -135,7 +122,7 @@ class Walk(unittest.TestCase):
         self.assertEqual(len(commands), 5)
         for words in commands[:4]:
             with self.subTest(" ".join(words)):
-                code, out, err = program(*words, folder=self.at)
+                code, out, err = run(*words, cwd=self.at)
                 self.assertEqual(code, 0, out + err)
         self.assertIn("2 of 2 laps, completed, all tyres on the road", out)
         self.assertIn("friction_low: the race is planned with a friction of", err)
@@ -161,13 +148,13 @@ class Walk(unittest.TestCase):
     @unittest.skipUnless(os.environ.get("CHICANE_SLOW_TESTS"), "fits three logs: ./test.sh --all")
     def test_a_recording_and_bags_of_it_tell_the_same(self):
         recording = self.at / "run.mcap"
-        code, _, err = program("drive", "--fast", "--car", "road-car", "--track", "hairpins", "--laps", "1", "--record", recording, folder=self.at)
+        code, _, err = run("drive", "--fast", "--car", "road-car", "--track", "hairpins", "--laps", "1", "--record", recording, cwd=self.at)
         self.assertEqual(code, 0, err)
         make_bag(recording, self.at / "bag")
         make_bag(recording, self.at / "older", "--storage", "sqlite3")
         found = []
         for log in ("run.mcap", "bag", "older"):
-            code, out, err = program("identify", log, "--car", "road-car", "--hold-out", "0.4", "--json", folder=self.at)
+            code, out, err = run("identify", log, "--car", "road-car", "--hold-out", "0.4", "--json", cwd=self.at)
             self.assertEqual(code, 0, err)
             found.append({each["key"]: each for each in json.loads(out)["estimates"]})
         self.assertEqual(found[1], found[2])
@@ -181,16 +168,16 @@ class Walk(unittest.TestCase):
     def test_a_log_of_straight_driving_is_no_car_to_race(self):
         rows = [f"{0.05 * i:.2f},{20 * 0.05 * i:.3f},0,0,20,0,0.1" for i in range(800)]
         (self.at / "log.csv").write_text("time,x,y,psi,speed,steer,throttle\n" + "\n".join(rows) + "\n")
-        code, out, err = program("identify", "log.csv", "--car", "road-car", "-o", "mine.yaml", folder=self.at)
+        code, out, err = run("identify", "log.csv", "--car", "road-car", "-o", "mine.yaml", cwd=self.at)
         self.assertEqual(code, 0, err)
         self.assertIn("grip is not known, and race refuses", " ".join(out.split()))
         self.assertNotIn("--preset race", out)
         self.assertIn("\nfriction_low: 0 ", (self.at / "mine.yaml").read_text())
-        code, out, err = program("drive", "--fast", "--preset", "race", "--car", "mine.yaml", folder=self.at)
+        code, out, err = run("drive", "--fast", "--preset", "race", "--car", "mine.yaml", cwd=self.at)
         self.assertEqual((code, out), (2, ""))
         self.assertRegex(err, r"^mine\.yaml:\d+: friction_low: got 0, .* \(--set friction_low=NUMBER\)\n$")
-        code, out, err = program("drive", "--fast", "--preset", "race", "--car", "mine.yaml", "--track", "oval", "--laps", "1",
-                                 "--set", "friction_low=0.7", folder=self.at)
+        code, out, err = run("drive", "--fast", "--preset", "race", "--car", "mine.yaml", "--track", "oval", "--laps", "1",
+                             "--set", "friction_low=0.7", cwd=self.at)
         self.assertEqual(code, 0, err)
         self.assertIn("planned with a friction of 0.7", err)
 
