@@ -8,6 +8,7 @@
 #include "chicane/protocol/library.hpp"
 #include "support/chicane_test.hpp"
 #include "support/comma_locale.hpp"
+#include "support/expect_said.hpp"
 #include "support/folder.hpp"
 
 namespace chicane::protocol {
@@ -27,85 +28,71 @@ std::string ring(const std::string& header, const std::string& separator, const 
   return text;
 }
 
+/// The warning of a file that has no widths.
+std::string assumed_at(const std::string& place) {
+  return place + ": width: not in the file, 4.5 m left and 4.5 m right assumed (import --width-m sets it)";
+}
+
 TEST(CsvTrack, ReadsWaypointsAndSaysTheWidthItAssumes) {
   const TrackFile file = parse_track(ring("x,y\n", ","), "ring.csv").value();
   EXPECT_EQ(file.points.size(), 40U);
   EXPECT_TRUE(file.is_closed);
   EXPECT_EQ(file.points[3].left, 4.5);
-  EXPECT_THAT(file.warnings, ElementsAre("ring.csv:1: width: not in the file, 4.5 m left and 4.5 m right "
-                                         "assumed (import --width-m sets it)"));
+  EXPECT_THAT(file.warnings, ElementsAre(assumed_at("ring.csv:1")));
   const TrackFile wide =
       parse_track(ring("x,y\n", ","), "ring.csv", {.default_left = 6.0, .default_right = 3.0}).value();
   EXPECT_EQ(wide.points[3].left, 6.0);
   EXPECT_EQ(wide.points[3].right, 3.0);
-}
-
-TEST(CsvTrack, ReadsTumCentreLinesWithTheRightWidthFirst) {
-  const TrackFile file =
-      parse_track(ring("# x_m,y_m,w_tr_right_m,w_tr_left_m\n", ",", ",4.4,4.8"), "ring.csv").value();
-  EXPECT_EQ(file.points[0].right, 4.4);
-  EXPECT_EQ(file.points[0].left, 4.8);
-  EXPECT_EQ(file.lines[0], 2);
-  EXPECT_THAT(file.warnings, IsEmpty());
+  const TrackFile matlab = parse_track(ring("% x_m y_m\n% a ring\n", " "), "a.csv").value();
+  EXPECT_EQ(matlab.points.size(), 40U);
+  EXPECT_EQ(matlab.lines[0], 3) << "behind the comments of Matlab";
 }
 
 TEST(CsvTrack, MatchesNamesNotPositions) {
+  const TrackFile tum =
+      parse_track(ring("# x_m,y_m,w_tr_right_m,w_tr_left_m\n", ",", ",4.4,4.8"), "ring.csv").value();
+  EXPECT_EQ(tum.points[0].right, 4.4);
+  EXPECT_EQ(tum.points[0].left, 4.8);
+  EXPECT_EQ(tum.lines[0], 2);
+  EXPECT_THAT(tum.warnings, IsEmpty());
   const TrackFile file =
       parse_track("w_tr_left_m,y_m,note,x_m,w_tr_right_m\n4.8,1,here,0,4.4\n4.8,2,there,9,4.4\n", "a.csv")
           .value();
   EXPECT_EQ(file.points[1].position, (Vec2{9.0, 2.0}));
   EXPECT_EQ(file.points[1].left, 4.8);
   EXPECT_THAT(file.warnings, Contains("a.csv:1: note: unknown column, ignored"));
+  EXPECT_EQ(parse_track("x,y,z,yaw,velocity\n0,1,18,0,30\n4,2,18,0,30\n", "a.csv")->warnings.front(),
+            "a.csv:1: z, yaw, velocity: unknown columns, ignored");
 }
 
-TEST(CsvTrack, NamesAllUnknownColumnsInOneWarning) {
-  const TrackFile file = parse_track("x,y,z,yaw,velocity\n0,1,18,0,30\n4,2,18,0,30\n", "a.csv").value();
-  EXPECT_EQ(file.warnings.front(), "a.csv:1: z, yaw, velocity: unknown columns, ignored");
-}
+/// Why a table of this text is refused.
+std::string refusal_of(const std::string& text) { return test::refusal_of(parse_track(text, "a.csv")); }
 
-TEST(CsvTrack, ReadsTheCommentsOfMatlab) {
-  const TrackFile file = parse_track(ring("% x_m y_m\n% a ring\n", " "), "a.csv").value();
-  EXPECT_EQ(file.points.size(), 40U);
-  EXPECT_EQ(file.lines[0], 3);
-}
-
-TEST(CsvTrack, KeepsTheLineOfNamesAboveRowsThatBeginWithText) {
-  EXPECT_EQ(parse_track("stamp,x,y\n2024-05-01 12:00,0,1\n2024-05-01 12:01,5,1\n", "a.csv")->points.size(),
-            2U);
-  EXPECT_EQ(parse_track("x_m,y_m\nnan,1\n", "a.csv").error().message,
-            "a.csv:2: x_m: got nan, expected a finite number with a decimal point");
-  EXPECT_EQ(parse_track("# x_m,y_m\n\n,2\n", "a.csv").error().message,
-            "a.csv:3: x_m: got nothing, expected a finite number with a decimal point");
-  EXPECT_EQ(parse_track("None,1\n2,3\n", "a.csv").error().message,
-            "a.csv:1: x_m: got None, expected a finite number with a decimal point")
-      << "no line of names";
-  EXPECT_EQ(parse_track("x,y\nx_m,y_m\n0,1\n5,1\n", "a.csv")->points.size(), 2U) << "a second one may follow";
-}
-
-TEST(CsvTrack, LeavesMapsOfConesToTheirReader) {
-  EXPECT_THAT(
-      parse_track("tag,x,y\nblue,0,1\n", "a.csv").error().message,
-      HasSubstr("a.csv: cones: got 1 of the left side and 0 of the right one, expected at least 3 of each"));
-  EXPECT_THAT(parse_track("x,y,colour\n0,1,Yellow\n", "a.csv").error().message,
-              HasSubstr("a.csv: cones: got 0 of"));
-}
-
-TEST(CsvTrack, GuessesNoColumnsButTwo) {
+TEST(CsvTrack, FindsTheLineOfNames) {
+  const std::string number = ", expected a finite number with a decimal point";
+  test::expect_said(refusal_of,
+                    {{"x_m,y_m\nnan,1\n", "a.csv:2: x_m: got nan" + number},
+                     {"# x_m,y_m\n\n,2\n", "a.csv:3: x_m: got nothing" + number},
+                     {"None,1\n2,3\n", "a.csv:1: x_m: got None" + number},  // no line of names
+                     {"# v_mps, ax_max_machines_mps2\n0,9\n1,8\n",
+                      "a.csv:1: header: got v_mps, ax_max_machines_mps2, expected columns x and y (or x_m "
+                      "and y_m) in metres"},
+                     {"# speed_mps time_s\n0 9\n1 8\n", "header: got speed_mps"},
+                     {"tag,x,y\nblue,0,1\n",
+                      "a.csv: cones: got 1 of the left side and 0 of the right one, expected at least 3"},
+                     {"x,y,colour\n0,1,Yellow\n", "a.csv: cones: got 0 of"}});
   for (const char* row : {"0,0,18.3,30\n2,0,18.3,30\n", "0;0;8;3.2\n2;0;8;3.2\n", "0,0,1\n", "0 0 1 2 3\n"})
-    EXPECT_THAT(parse_track(row, "a.csv").error().message,
+    EXPECT_THAT(refusal_of(row),
                 HasSubstr("expected a line that names them, like x_m,y_m,w_tr_right_m,w_tr_left_m"));
+  for (const char* text :
+       {"stamp,x,y\n2024-05-01 12:00,0,1\n2024-05-01 12:01,5,1\n",  // rows that begin with text
+        "x,y\nx_m,y_m\n0,1\n5,1\n",                                 // a second line of names
+        "# my track\n0 9\n1 8\n",
+        "# of Monza, the old one, in 2D\n0,9\n1,8\n",  // words are no names of columns
+        "# a,b,c\n0,9\n1,8\n"})                        // another number of columns
+    EXPECT_EQ(parse_track(text, "a.csv")->points.size(), 2U) << text;
   EXPECT_THAT(parse_track("0,0\n2,0\n", "a.csv")->warnings.front(),
               HasSubstr("header: none, read as x_m,y_m"));
-}
-
-TEST(CsvTrack, TakesACommentThatNamesOtherColumns) {
-  EXPECT_EQ(parse_track("# v_mps, ax_max_machines_mps2\n0,9\n1,8\n", "a.csv").error().message,
-            "a.csv:1: header: got v_mps, ax_max_machines_mps2, expected columns x and y (or x_m and y_m) in "
-            "metres");
-  EXPECT_FALSE(parse_track("# speed_mps time_s\n0 9\n1 8\n", "a.csv"));
-  EXPECT_TRUE(parse_track("# my track\n0 9\n1 8\n", "a.csv")) << "words are no names of columns";
-  EXPECT_TRUE(parse_track("# of Monza, the old one, in 2D\n0,9\n1,8\n", "a.csv"));
-  EXPECT_TRUE(parse_track("# a,b,c\n0,9\n1,8\n", "a.csv")) << "another number of columns";
 }
 
 TEST(CsvTrack, RefusesDegreesOfLatitudeAndLongitude) {
@@ -113,10 +100,9 @@ TEST(CsvTrack, RefusesDegreesOfLatitudeAndLongitude) {
   for (int i = 0; i < 40; ++i)
     text += std::to_string(11.57 + 0.01 * std::cos(0.157 * i)) + "," +
             std::to_string(48.13 + 0.01 * std::sin(0.157 * i)) + "\n";
-  EXPECT_THAT(
-      parse_track(text, "a.csv").error().message,
-      HasSubstr("a.csv:2: x_m: got a road within 0.02 m round 11.58, 48.13, like degrees of longitude and "
-                "latitude, expected metres"));
+  EXPECT_THAT(refusal_of(text),
+              HasSubstr("a.csv:2: x_m: got a road within 0.02 m round 11.58, 48.13, like degrees "
+                        "of longitude and latitude, expected metres"));
 }
 
 TEST(CsvTrack, AssumesLengthsOfTheRoadsOwnScale) {
@@ -144,9 +130,8 @@ TEST(CsvTrack, ReadsTumRaceLinesAndRecomputesTheirHeading) {
   EXPECT_TRUE(file.is_closed);
   EXPECT_THAT(
       file.warnings,
-      ElementsAre(
-          "race.csv:3: width: not in the file, 4.5 m left and 4.5 m right assumed (import --width-m sets it)",
-          "race.csv:4: psi_rad: counts from +y (as TUM files do), recomputed from the points"));
+      ElementsAre(assumed_at("race.csv:3"),
+                  "race.csv:4: psi_rad: counts from +y (as TUM files do), recomputed from the points"));
   EXPECT_NEAR(make_track(file)->centre().at(0.0).heading, kPi / 2.0, 0.01);
 }
 
@@ -230,14 +215,10 @@ TEST(CsvTrack, WritesWhatItReadsBackBitForBit) {
   EXPECT_THAT(back.warnings, IsEmpty());
 }
 
-TEST(CsvTrack, RefusesTooManyPoints) {
-  std::string text = "x,y\n";
-  for (std::size_t i = 0; i <= kMaxTrackPoints; ++i) text += i % 2 == 0 ? "1,2\n" : "3,4\n";
-  EXPECT_EQ(parse_track(text, "a.csv").error().message,
-            "a.csv:1000002: row: got another point, expected at most 1000000");
-}
-
-TEST(CsvTrack, WarningsAndColumnsHaveALimit) {
+TEST(CsvTrack, PointsWarningsAndColumnsHaveALimit) {
+  std::string points = "x,y\n";
+  for (std::size_t i = 0; i <= kMaxTrackPoints; ++i) points += i % 2 == 0 ? "1,2\n" : "3,4\n";
+  EXPECT_EQ(refusal_of(points), "a.csv:1000002: row: got another point, expected at most 1000000");
   std::string text;
   for (int i = 0; i < 2000; ++i) text += "# x,y,mood,colour\n";
   EXPECT_LE(parse_track(text + "1,2,3,4\n5,6,7,8\n", "a.csv")->warnings.size(), 4U)
@@ -246,9 +227,7 @@ TEST(CsvTrack, WarningsAndColumnsHaveALimit) {
   for (int i = 0; i < 900; ++i) many += ",c" + std::to_string(i);
   EXPECT_LT(parse_track(many + "\n1,2" + std::string(900, ',') + "\n", "a.csv")->warnings.front().size(),
             200U);
-  std::string header = "x,y";
-  for (int i = 0; i < 1000; ++i) header += ",c";
-  EXPECT_EQ(parse_track(header, "a.csv").error().message,
+  EXPECT_EQ(refusal_of(many + std::string(100, ',')),
             "a.csv:1: header: got 1002 columns, expected at most 1000");
 }
 
@@ -320,10 +299,8 @@ TEST(TrackCodec, FindsTheFormatByTheEndOfTheName) {
   }
   EXPECT_EQ(track_format_of("cars/road-car.yaml"), nullptr);
   EXPECT_EQ(track_format_of(""), nullptr);
-}
-
-TEST(TrackCodec, ReadsAFileOfAnUnknownNameAsTheFirstFormat) {
-  EXPECT_EQ(parse_track("x,y\n0,1\n2,3\n", "points.txt")->points.size(), 2U);
+  EXPECT_EQ(parse_track("x,y\n0,1\n2,3\n", "points.txt")->points.size(), 2U) << "as the first format";
+  EXPECT_EQ(read_track("no/such/track.csv").error().code, ErrorCode::kNotFound);
 }
 
 TEST(TrackCodec, RefusesTooMuchInEveryFormat) {
@@ -334,10 +311,6 @@ TEST(TrackCodec, RefusesTooMuchInEveryFormat) {
     EXPECT_EQ(parse_track("", "a" + std::string(extension), {.default_left = -1.0}).error().code,
               ErrorCode::kInvalidArgument);
   }
-}
-
-TEST(TrackCodec, NamesAMissingFile) {
-  EXPECT_EQ(read_track("no/such/track.csv").error().code, ErrorCode::kNotFound);
 }
 
 TEST(TrackCodec, TheLibraryHasTheTracksOfEveryFormat) {

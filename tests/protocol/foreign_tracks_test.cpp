@@ -8,6 +8,7 @@
 #include "chicane/protocol/library.hpp"
 #include "chicane/road/track.hpp"
 #include "support/chicane_test.hpp"
+#include "support/expect_said.hpp"
 #include "support/folder.hpp"
 #include "support/stadium.hpp"
 
@@ -113,6 +114,22 @@ TEST(ForeignTracks, RefusesInWordsWhatIsNoRoad) {
   }
 }
 
+/// An OpenDRIVE file of one road, 4 m to each side, of lines and arcs: x, y, heading, length, curvature.
+std::string open_drive(const std::vector<std::array<double, 5>>& pieces, const std::string& more = "") {
+  std::string plan;
+  for (const auto& [x, y, heading, length, curvature] : pieces)
+    plan += fmt::format("<geometry x='{}' y='{}' hdg='{}' length='{}'><arc curvature='{}'/></geometry>", x, y,
+                        heading, length, curvature);
+  const auto lane = [](const char* side, int id) {
+    return fmt::format("<{}><lane id='{}' type='driving'><width a='4'/></lane></{}>", side, id, side);
+  };
+  return fmt::format(
+      "<OpenDRIVE><road id='7' length='100'><planView>{}</planView><lanes><laneSection "
+      "s='0'>{}{}</laneSection>"
+      "</lanes></road>{}</OpenDRIVE>",
+      plan, lane("left", 1), lane("right", -1), more);
+}
+
 // A uniform spline left the points of 24 of 40 drawn circuits by more than the width of the road.
 TEST(ForeignTracks, DrawnCircuitsWithLongStraightsAreWithinTheirNoise) {
   std::string text = R"({"type": "LineString", "coordinates": [)";
@@ -127,40 +144,45 @@ TEST(ForeignTracks, DrawnCircuitsWithLongStraightsAreWithinTheirNoise) {
 }
 
 TEST(ForeignTracks, NamesElementAndLineOfAFault) {
-  const auto message = [](std::string_view text) { return parse_track(text, "f.xml").error().message; };
-  EXPECT_THAT(message("<?xml version='1.0'?>\n<gpx>\n<trkpt lat='x' lon='1'/></gpx>"),
-              HasSubstr("f.xml:3: latitude: got x, expected a finite number"));
-  EXPECT_THAT(message("<svg>\n</svg>"),
-              HasSubstr("f.xml:1: root: got the element svg, expected gpx, kml, osm, OpenDRIVE or sdf"));
-  EXPECT_THAT(message("<osm>\n<way id='1'><nd ref='1'/><nd ref='2'/></way></osm>"),
-              HasSubstr("f.xml: way: got a node "));
-  EXPECT_THAT(message("<OpenDRIVE>\n<road id='1'>\n</road></OpenDRIVE>"),
-              HasSubstr("f.xml:2: road: got no planView and lanes, expected both"));
-  EXPECT_THAT(message("{\"type\": \"Feature\",\n oops"),
-              HasSubstr("f.xml:2: file: got text that is no JSON"));
-  EXPECT_THAT(message("{\"centerline_waypoints\": {\"wpnts\": [{\"x_m\": 1}]}}"),
-              HasSubstr("centerline_waypoints.wpnts[0]: y_m: got nothing"));
-  EXPECT_THAT(message("tag,x,y\nblue,0,1\nblue,0,zero\n"),
-              HasSubstr("f.xml:3: y: got zero, expected a finite number"));
-}
-
-/// An OpenDRIVE file of one road, 4 m to each side, of lines and arcs: x, y, heading, length, curvature.
-std::string open_drive(const std::vector<std::array<double, 5>>& pieces, const std::string& more = "") {
-  std::string plan;
-  for (const auto& [x, y, heading, length, curvature] : pieces)
-    plan += fmt::format("<geometry x='{}' y='{}' hdg='{}' length='{}'><arc curvature='{}'/></geometry>", x, y,
-                        heading, length, curvature);
-  const auto lane = [](const char* side, int id) {
-    return fmt::format("<{}><lane id='{}' type='driving'><width a='4'/></lane></{}>", side, id, side);
-  };
-  return fmt::format(
-      "<OpenDRIVE><road id='7'><planView>{}</planView><lanes><laneSection s='0'>{}{}</laneSection>"
-      "</lanes></road>{}</OpenDRIVE>",
-      plan, lane("left", 1), lane("right", -1), more);
+  test::expect_said(
+      [](const std::string& text) { return test::refusal_of(parse_track(text, "f.xml")); },
+      {{"<?xml version='1.0'?>\n<gpx>\n<trkpt lat='x' lon='1'/></gpx>",
+        "f.xml:3: latitude: got x, expected a finite number"},
+       {"<svg>\n</svg>", "f.xml:1: root: got the element svg, expected gpx, kml, osm, OpenDRIVE or sdf"},
+       {"<osm>\n<way id='1'><nd ref='1'/><nd ref='2'/></way></osm>", "f.xml: way: got a node "},
+       {"<OpenDRIVE>\n<road id='1'>\n</road></OpenDRIVE>",
+        "f.xml:2: road: got no planView and lanes, expected both"},
+       {"{\"type\": \"Feature\",\n oops", "f.xml:2: file: got text that is no JSON"},
+       {"{\"centerline_waypoints\": {\"wpnts\": [{\"x_m\": 1}]}}",
+        "centerline_waypoints.wpnts[0]: y_m: got nothing"},
+       {"tag,x,y\nblue,0,1\nblue,0,zero\n", "f.xml:3: y: got zero, expected a finite number"},
+       // Files that are no roads.
+       {"<osm><way id='1'><nd ref='1'/><nd ref='2'/></way><relation id='3'>\n<tag k='type' "
+        "v='lanelet'/></relation></osm>",
+        "f.xml:1: relation: got a lanelet of a Lanelet2 map, expected ways of a course"},
+       {"<commonRoad>\n<lanelet id='1'/></commonRoad>",
+        "f.xml:1: root: got a scene of CommonRoad, expected one road"},
+       {"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n",
+        "f.xml:1: file: got a pointer of git-LFS, expected the file itself (git lfs pull)"},
+       {R"({"X": [0], "Y": [0], "X_i": [0], "Y_i": [0]})", "got a track.json of MPCC"},
+       {"image: none.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n",
+        "f.xml: image: got none.pgm, which cannot be read, expected a PGM or PNG file"},
+       {"image: none.pgm\nresolution: 0.05\norigin: [0, 0, -nan]\n",
+        "f.xml:3: origin: yaw: got -nan, expected a finite"},
+       // Jumps, kinks and junctions of OpenDRIVE.
+       {open_drive({{0, 0, 0, 100, 0}, {100, 1.5, 0, 50, 0.02}}),
+        "geometry: got a jump of 1.50 m at s = 100.0 m of road 7, expected pieces that join"},
+       {open_drive({{0, 0, 0, 100, 0}, {100, 0, 0.2, 50, 0.02}}),
+        "geometry: got a kink of 0.20 rad at s = 100.0 m of road 7"},
+       {open_drive({{0, 0, 0, 100, 0}}, "<junction id='1'/>"),
+        "junction: got a network of 1 roads, expected one course without junctions"}});
 }
 
 TEST(OpenDrive, KeepsItsLengthAndItsArcs) {
-  const auto straight = test::good(make_track(*parse_track(open_drive({{0, 0, 0, 500, 0}}), "f.xodr")));
+  const auto content = test::good(parse_track(open_drive({{0, 0, 0, 500, 0}}), "f.xodr"));
+  EXPECT_THAT(content->warnings,
+              Contains(HasSubstr("length: road 7 states 100.0 m, and its planView of 500.0 m is taken")));
+  const auto straight = test::good(make_track(*content));
   EXPECT_FALSE(straight->centre().is_closed());
   EXPECT_NEAR(straight->length(), 500.0, 0.01);
   const double half = kPi * 40.0;
@@ -178,17 +200,6 @@ TEST(OpenDrive, KeepsItsLengthAndItsArcs) {
               0.01);
 }
 
-TEST(OpenDrive, RefusesJumpsKinksAndJunctions) {
-  const auto message = [](const std::string& text) { return parse_track(text, "f.xodr").error().message; };
-  EXPECT_THAT(
-      message(open_drive({{0, 0, 0, 100, 0}, {100, 1.5, 0, 50, 0.02}})),
-      HasSubstr("geometry: got a jump of 1.50 m at s = 100.0 m of road 7, expected pieces that join"));
-  EXPECT_THAT(message(open_drive({{0, 0, 0, 100, 0}, {100, 0, 0.2, 50, 0.02}})),
-              HasSubstr("geometry: got a kink of 0.20 rad at s = 100.0 m of road 7"));
-  EXPECT_THAT(message(open_drive({{0, 0, 0, 100, 0}}, "<junction id='1'/>")),
-              HasSubstr("junction: got a network of 1 roads, expected one course without junctions"));
-}
-
 TEST(ForeignTracks, ReadsConesThatAreLinksOfOneModel) {
   std::string cones = "<sdf><model name='course'>";
   for (int i = 0; i < 24; ++i)
@@ -200,35 +211,6 @@ TEST(ForeignTracks, ReadsConesThatAreLinksOfOneModel) {
           i, radius * std::cos(kPi * i / 12), radius * std::sin(kPi * i / 12), colour);
   const auto links = test::good(parse_track(cones + "</model></sdf>", "f", {}));
   EXPECT_NEAR(make_track(*links)->length(), 37.0 * kPi, 1.5);
-}
-
-TEST(ForeignTracks, SaysThatARoadStatesAnotherLength) {
-  const auto longer = test::good(parse_track(
-      "<OpenDRIVE><road id='1' length='200'><planView><geometry s='0' x='0' y='0' hdg='0' "
-      "length='50'><line/></geometry></planView>"
-      "<lanes><laneSection s='0'><right><lane id='-1' type='driving'><width sOffset='0' a='6' b='0' c='0' "
-      "d='0'/></lane></right>"
-      "</laneSection></lanes></road></OpenDRIVE>",
-      "f", {}));
-  EXPECT_THAT(longer->warnings,
-              Contains(HasSubstr("length: road 1 states 200.0 m, and its planView of 50.0 m is taken")));
-}
-
-TEST(ForeignTracks, NamesFilesThatAreNoRoads) {
-  const auto message = [](std::string_view text) { return parse_track(text, "f").error().message; };
-  EXPECT_THAT(message("<osm><way id='1'><nd ref='1'/><nd ref='2'/></way><relation id='3'>\n"
-                      "<tag k='type' v='lanelet'/></relation></osm>"),
-              HasSubstr("f:1: relation: got a lanelet of a Lanelet2 map, expected ways of a course"));
-  EXPECT_THAT(message("<commonRoad>\n<lanelet id='1'/></commonRoad>"),
-              HasSubstr("f:1: root: got a scene of CommonRoad, expected one road"));
-  EXPECT_THAT(message("version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n"),
-              HasSubstr("f:1: file: got a pointer of git-LFS, expected the file itself (git lfs pull)"));
-  EXPECT_THAT(message(R"({"X": [0], "Y": [0], "X_i": [0], "Y_i": [0]})"),
-              HasSubstr("got a track.json of MPCC"));
-  EXPECT_THAT(message("image: none.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n"),
-              HasSubstr("f: image: got none.pgm, which cannot be read, expected a PGM or PNG file"));
-  EXPECT_THAT(message("image: none.pgm\nresolution: 0.05\norigin: [0, 0, -nan]\n"),
-              HasSubstr("f:3: origin: yaw: got -nan, expected a finite number"));
 }
 
 /// Names, lengths and widths of tests/data/maps/expected.csv.
@@ -298,24 +280,18 @@ TEST(XmlDocument, HasElementsAndNumbersWithTheirLines) {
   EXPECT_EQ(xml->line_of(found[1]), 4);
 }
 
-TEST(XmlDocument, SaysWhereTextIsNoXml) {
-  EXPECT_THAT(parse_xml("<a>\n<b></a>", "f.xml").error().message,
-              HasSubstr("f.xml:2: file: got XML that cannot be read: Start-end tags mismatch"));
-  EXPECT_THAT(parse_xml("<a/>\n<a/>", "f.xml").error().message,
-              HasSubstr("f.xml:2: file: got XML that cannot"));
-  EXPECT_FALSE(parse_xml("", "f.xml"));
-}
-
-TEST(XmlDocument, EndsAtItsLimits) {
-  const auto fault = [](const std::string& text) { return parse_xml(text, "f.xml").error().message; };
-  EXPECT_THAT(fault("<!DOCTYPE a [<!ENTITY b 'bbbb'>]>\n<a>&b;</a>"),
-              HasSubstr("f.xml:1: file: got XML that cannot be read: entities of its own"));
-  std::string deep;
+TEST(XmlDocument, SaysWhereTextIsNoXmlAndEndsAtItsLimits) {
+  std::string deep, many = "<a>";
   for (int i = 0; i < 65; ++i) deep = "<a>" + deep + "</a>";
-  EXPECT_THAT(fault(deep), HasSubstr("nested more than 64 deep"));
-  std::string many = "<a>";
   for (int i = 0; i < 2'000'001; ++i) many += "<b/>";
-  EXPECT_THAT(fault(many + "</a>"), HasSubstr("more than 2000000 tags"));
+  test::expect_said([](const std::string& text) { return test::refusal_of(parse_xml(text, "f.xml")); },
+                    {{"<a>\n<b></a>", "f.xml:2: file: got XML that cannot be read: Start-end tags mismatch"},
+                     {"<a/>\n<a/>", "f.xml:2: file: got XML that cannot"},
+                     {"<!DOCTYPE a [<!ENTITY b 'bbbb'>]>\n<a>&b;</a>",
+                      "f.xml:1: file: got XML that cannot be read: entities of its own"},
+                     {deep, "nested more than 64 deep"},
+                     {many + "</a>", "more than 2000000 tags"}});
+  EXPECT_FALSE(parse_xml("", "f.xml"));
 }
 
 }  // namespace

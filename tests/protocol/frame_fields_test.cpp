@@ -9,7 +9,7 @@
 #include "protocol/typescript.hpp"
 #include "protocol/viewer_samples.hpp"
 #include "support/chicane_test.hpp"
-#include "support/folder.hpp"
+#include "support/kept_text.hpp"
 
 namespace chicane::protocol {
 namespace {
@@ -87,13 +87,8 @@ TEST(TypeScript, RefusesATypeItDoesNotKnow) {
   EXPECT_THROW(std::ignore = test::typescript("Sample", "geometry_msgs/Point[] points\n"), std::logic_error);
 }
 
-/// CHICANE_WRITE_FIXTURES=1 renews the file: cmake --build --preset release --target renew_fixtures
 TEST(TypeScript, FixturesOfTheDashboardAreUpToDate) {
-  const fs::path path = fs::path(CHICANE_SOURCE_DIR) / "web/src/protocol/messages.ts";
-  if (std::getenv("CHICANE_WRITE_FIXTURES") != nullptr)
-    std::ofstream(path, std::ios::binary) << test::typescript_messages();
-  EXPECT_EQ(test::content_of(path), test::typescript_messages())
-      << "wanted? cmake --build --preset release --target renew_fixtures";
+  test::expect_kept("../web/src/protocol/messages.ts", test::typescript_messages());
 }
 
 TEST(FrameFields, HaveAConstantForEverySourceReasonAndStatus) {

@@ -43,51 +43,36 @@ struct Hostile {
   std::string words;  ///< that the reason must contain
 };
 
+/// These texts are refused with the same words.
+struct Refused {
+  std::string words;
+  std::vector<std::string> texts;
+};
+
 inline std::vector<Hostile> hostile_messages() {
+  const std::vector<Refused> framing{
+      {"digit", {" ", "{}", "\xff\xfe\xfd"}},
+      {"no array", {"42", "42{}", "42/namespace,[]", "42null", "42" + repeat("9", 60'000)}},
+      {"name", {"42[]", "42[null]", "42[\"telemetry\",{},{}]"}},
+      {"not JSON at byte", {"42["}},
+      {"not JSON",
+       {"42[\"telemetry\",{}]]", "42[\"telemetry\",{\"x\":1", "42[\"telemetry\",{'x':1}]",
+        "42[\"telemetry\",{\"x\":+1}]", "42[\"telemetry\",{\"x\":0x10}]", "42[\"tele\xffmetry\",{}]",
+        "42[\"telemetry\",{\"x\":\"\xc3\x28\"}]", "42[\"telemetry\",{\"x\":\"\\ud800\"}]",
+        "42" + repeat("[", 10'000)}},
+      {"at most 65536", {"42[\"telemetry\",\"" + repeat("x", 70'000) + "\"]", repeat("4", 70'000)}}};
   std::vector<Hostile> list{
-      // Framing.
       {"", "empty"},
-      {" ", "digit"},
-      {"{}", "digit"},
-      {"\xff\xfe\xfd", "digit"},
-      {"42", "no array"},
-      {"42{}", "no array"},
-      {"42/namespace,[]", "no array"},
-      {"42null", "no array"},
-      {"42[", "not JSON at byte"},
-      {"42[]", "name"},
-      {"42[null]", "name"},
-      {"42[\"telemetry\",{},{}]", "name"},
-      {"42[\"telemetry\",{}]]", "not JSON"},
-      {"42[\"telemetry\",{\"x\":1", "not JSON"},
-      {"42[\"telemetry\",{'x':1}]", "not JSON"},
-      {"42[\"telemetry\",{\"x\":+1}]", "not JSON"},
-      {"42[\"telemetry\",{\"x\":0x10}]", "not JSON"},
       {"42[\"telemetry\",{\"x\":NaN}]", "x: got NaN, expected a number"},
       {"42[\"telemetry\",{\"x\":-Infinity}]", "x: got -Infinity, expected a number"},
-      {"42[\"tele\xffmetry\",{}]", "not JSON"},
-      {"42[\"telemetry\",{\"x\":\"\xc3\x28\"}]", "not JSON"},
-      {"42[\"telemetry\",{\"x\":\"\\ud800\"}]", "not JSON"},
-      {"42" + repeat("[", 10'000), "not JSON"},
       {"42[\"telemetry\"," + repeat("[", 10'000) + repeat("]", 10'000) + "]", "an object or null"},
       {"42[\"telemetry\"," + repeat("{\"x\":", 10'000) + "1" + repeat("}", 10'000) + "]", "missing"},
-      {"42[\"telemetry\",\"" + repeat("x", 70'000) + "\"]", "at most 65536"},
-      {repeat("4", 70'000), "at most 65536"},
-      {"42" + repeat("9", 60'000), "no array"},
       // The payload.
       {R"(42["telemetry"])", "telemetry: without data"},
       {R"(42["telemetry",{}])", "ptsx: missing"},
       {R"(42["telemetry",[]])", "got an array of 0, expected an object or null"},
       {R"(42["telemetry",7])", "got 7"},
       {R"(42["telemetry","null"])", "got \"null\""},
-      {without("ptsx"), "ptsx: missing"},
-      {without("ptsy"), "ptsy: missing"},
-      {without("psi"), "psi: missing"},
-      {without("x"), "x: missing"},
-      {without("y"), "y: missing"},
-      {without("speed"), "speed: missing"},
-      {without("throttle"), "throttle: missing"},
-      {without("steering_angle"), "steering_angle: missing"},
       // One field.
       {with("\"x\":-40.62008", "\"x\":\"-40.62008\""), "x: got \"-40.62008\", expected a number"},
       {with("\"x\":-40.62008", "\"x\":\"NaN\""), "x: got \"NaN\""},
@@ -123,6 +108,10 @@ inline std::vector<Hostile> hostile_messages() {
       {with("\"psi\":3.733667", "\"psi\":3,733667"), "LC_NUMERIC=C"},
       {with("\"speed\":2.995219E-06", "\"speed\":2,995219E-06"), "decimal comma"},
   };
+  for (const auto& [words, texts] : framing)
+    for (const std::string& text : texts) list.push_back({text, words});
+  for (const std::string key : {"ptsx", "ptsy", "psi", "x", "y", "speed", "throttle", "steering_angle"})
+    list.push_back({without(key), key + ": missing"});
   return list;
 }
 

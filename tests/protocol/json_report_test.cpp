@@ -7,6 +7,7 @@
 #include "chicane/base/math.hpp"
 #include "chicane/protocol/json.hpp"
 #include "support/chicane_test.hpp"
+#include "support/kept_text.hpp"
 
 namespace chicane::protocol {
 namespace {
@@ -34,134 +35,39 @@ telemetry::RunSummary example() {
   return run;
 }
 
-TEST(JsonReport, NumbersCornersWithTheirSides) {
-  const Tree report = Tree::parse(to_json(example()));
-  ASSERT_EQ(report["corners"].size(), 2U);
-  EXPECT_EQ(report["corners"][0]["apex_m"], 30.0);
-  EXPECT_NEAR(report["corners"][1]["turn_deg"].get<double>(), -180.0, 1e-9);
-  EXPECT_EQ(report["laps"][0]["corner_times_s"], (Tree{12.25, 16.25}));
-  EXPECT_THAT(to_table(example()), HasSubstr("corners [s]         1 left  12.25    2 right 16.25"));
+/// The run as JSON and as a table equals what is kept of it.
+void expect_reports(const std::string& name, const telemetry::RunSummary& run) {
+  const std::string folder = "protocol/fixtures/reports/";
+  std::string json = to_json(run);
+  const std::string arithmetic(chicane::arithmetic(chosen_instruction_set()));
+  json.replace(json.find(arithmetic), arithmetic.size(), "of this machine");
+  test::expect_kept(folder + name + ".json", json);
+  test::expect_kept(folder + name + ".txt", to_table(run));
 }
 
-TEST(JsonReport, HasEveryDocumentedKey) {
-  const Tree report = Tree::parse(to_json(example()));
-  std::istringstream keys(
-      "track car controller preset seed latency_ms notices completed laps_completed off_track_events "
-      "out_of_track_time_s corners laps step_time_is step_time_us solve_time_us solver fallbacks learned "
-      "guard_reasons gate_interventions deadline_misses state_hash arithmetic");
-  for (std::string key; keys >> key;) EXPECT_TRUE(report.contains(key)) << key;
-  for (const char* key : {"lap_time_s", "mean_speed_mps", "top_speed_mps", "top_speed_mph",
-                          "rms_lateral_error_m", "max_abs_lateral_error_m", "min_edge_distance_m",
-                          "max_lateral_acceleration_mps2", "steering_rate_rms_radps", "sector_times_s",
-                          "corner_times_s", "gap_to_limit_percent", "sector_gaps_to_limit_percent"}) {
-    EXPECT_TRUE(report["laps"][0].contains(key)) << key;
-  }
-  for (const char* key : {"p50", "p99", "p999", "max"}) {
-    EXPECT_TRUE(report["step_time_us"].contains(key)) << key;
-    EXPECT_TRUE(report["solve_time_us"].contains(key)) << key;
-  }
-  EXPECT_TRUE(report["solver"].contains("mean_iterations"));
-  EXPECT_TRUE(report["solver"].contains("not_usable"));
-}
-
-TEST(JsonReport, HasWhatTheRunLearnedInTheUnitsOfItsNames) {
-  telemetry::RunSummary run = example();
-  EXPECT_EQ(Tree::parse(to_json(run))["learned"], nullptr);
-  run.learned.delay = {0.0625, 0.005};
-  run.learned.offset = {degrees_to_radians(2.0), degrees_to_radians(0.1)};
-  const Tree learned = Tree::parse(to_json(run))["learned"];
-  EXPECT_EQ(learned["delay_ms"], 62.5);
-  EXPECT_EQ(learned["delay_sd_ms"], 5.0);
-  EXPECT_NEAR(learned["steer_offset_deg"].get<double>(), 2.0, 1e-12);
-  EXPECT_NEAR(learned["steer_offset_sd_deg"].get<double>(), 0.1, 1e-12);
-  EXPECT_FALSE(learned.contains("grip"));
-}
-
-TEST(JsonReport, NamesTheGuardWithItsVersion) {
-  telemetry::RunSummary run = example();
-  EXPECT_EQ(Tree::parse(to_json(run))["guard"], nullptr) << "another program drives";
-  run.guard = {.mode = safety::GuardMode::kObserve, .margin = 0.5, .blind_time = 2.0};
-  EXPECT_EQ(Tree::parse(to_json(run))["guard"], (Tree{{"version", safety::kGuardVersion},
-                                                      {"mode", "observe"},
-                                                      {"road", "track"},
-                                                      {"half_width_m", 3.5},
-                                                      {"receiver", "stop-plan"},
-                                                      {"margin_m", 0.5},
-                                                      {"blind_time_s", 2.0}}));
-  EXPECT_THAT(to_table(run), HasSubstr("guard observe"));
-  EXPECT_THAT(to_table(run), HasSubstr("control step "));
-  run.guard.reset();
-  EXPECT_THAT(to_table(run), HasSubstr("round trip "));
-  EXPECT_EQ(Tree::parse(to_json(run))["step_time_is"], "round trip");
-}
-
-TEST(JsonReport, ConvertsUnits) {
-  const Tree report = Tree::parse(to_json(example()));
-  EXPECT_EQ(report["latency_ms"], 100.0);
-  EXPECT_NEAR(report["laps"][0]["top_speed_mph"].get<double>(), 100.0, 1e-9);
-  EXPECT_NEAR(report["step_time_us"]["p50"].get<double>(), 25.0, 1e-9);
-  EXPECT_EQ(report["state_hash"], "0000000000000abc");
-  EXPECT_EQ(report["arithmetic"], std::string(arithmetic(chosen_instruction_set())));
-  EXPECT_EQ(report["seed"], 3);
-}
-
-TEST(JsonReport, TellsTheGapsToTheLimit) {
+TEST(JsonReport, FixturesOfReportsAreUpToDate) {
   telemetry::RunSummary run = example();
   run.why_no_limit = "the road is open";
-  EXPECT_TRUE(Tree::parse(to_json(run))["limit"].is_null());
-  EXPECT_EQ(Tree::parse(to_json(run))["why_no_limit"], "the road is open");
-  EXPECT_THAT(to_table(run), HasSubstr("limit              not known: the road is open\n"));
-  telemetry::compare_with_limit(run, {.lap = 25.0, .sectors = {8.0, 9.5, 7.5}});
-  const Tree report = Tree::parse(to_json(run));
-  EXPECT_EQ(report["limit"],
-            Tree::parse(R"({"lap_time_s": 25.0, "sector_times_s": [8.0, 9.5, 7.5], "corner_times_s": []})"));
-  EXPECT_NEAR(report["laps"][0]["gap_to_limit_percent"].get<double>(), 14.0, 1e-9);
-  EXPECT_NEAR(report["laps"][0]["sector_gaps_to_limit_percent"][0].get<double>(), 12.5, 1e-9);
-  EXPECT_THAT(to_table(run), HasSubstr("limit              25.000 s, the best lap +14.00 %"));
-}
+  run.off_track_events = 2;
+  run.laps[0].min_edge_distance = std::numeric_limits<double>::quiet_NaN();
+  expect_reports("of_another_program", run);
 
-TEST(JsonReport, TellsWhatTakesTheGapInEachCorner) {
-  telemetry::RunSummary run = example();
-  run.corners = {{.turn = 1.0}, {.turn = -1.0}};
+  run = example();
+  run.learned.delay = {0.0625, 0.005};
+  run.learned.offset = {degrees_to_radians(2.0), degrees_to_radians(0.1)};
+  run.guard = {.mode = safety::GuardMode::kObserve, .margin = 0.5, .blind_time = 2.0};
   run.laps[0].corner_times = {10.5, 18.0};
   telemetry::compare_with_limit(run, {.lap = 25.0, .sectors = {8.0, 9.5, 7.5}, .corners = {9.0, 16.0}});
   run.planned_corner_times = {10.0, 17.5};
   run.without = {{.cause = "latency", .lap_time = 27.5, .corners = {10.25, 17.25}},
                  {.cause = "edge margin", .off_track_events = 3}};
-  const Tree report = Tree::parse(to_json(run));
-  EXPECT_EQ(report["limit"]["corner_times_s"], Tree::parse("[9.0, 16.0]"));
-  EXPECT_EQ(report["planned_corner_times_s"], Tree::parse("[10.0, 17.5]"));
-  EXPECT_EQ(report["without"], Tree::parse(R"([
-    {"cause": "latency", "lap_time_s": 27.5, "corner_times_s": [10.25, 17.25], "off_track_events": 0},
-    {"cause": "edge margin", "lap_time_s": null, "corner_times_s": [], "off_track_events": 3}])"));
-  const std::string table = to_table(run);
-  EXPECT_THAT(table, HasSubstr(" gap [s]  limit   plan    lap    gap latency    edge  rest\n"));
-  EXPECT_THAT(table, HasSubstr(" 1 left    9.00  10.00  10.50   1.50    0.25       -  1.25\n"));
-  EXPECT_THAT(table, HasSubstr(" 2 right  16.00  17.50  18.00   2.00    0.75       -  1.25\n"));
-  EXPECT_THAT(table, HasSubstr("     lap  25.00  27.50  28.50   3.50    1.00       -  2.50\n"));
-  EXPECT_THAT(table, HasSubstr("without edge margin the car left the road 3 times\n"));
-}
+  expect_reports("beside_its_limit", run);
 
-TEST(JsonReport, WhatWasNotMeasuredIsNull) {
-  telemetry::RunSummary run = example();
-  run.laps[0].min_edge_distance = std::numeric_limits<double>::quiet_NaN();
-  const Tree report = Tree::parse(to_json(run));
-  EXPECT_TRUE(report["laps"][0]["min_edge_distance_m"].is_null());
-  EXPECT_TRUE(report["laps"][0]["gap_to_limit_percent"].is_null());
-  run.track = "caf\xe9.csv";
-  EXPECT_TRUE(Tree::accept(to_json(run))) << "a name that is not UTF-8";
-}
-
-TEST(JsonReport, TheTableSaysHowItEnded) {
-  telemetry::RunSummary run = example();
-  EXPECT_THAT(to_table(run), HasSubstr("1 of 1 laps, completed, all tyres on the road"));
-  EXPECT_THAT(to_table(run), HasSubstr("28.500"));
-  EXPECT_THAT(to_table(run), HasSubstr("9.00 9.50 10.00"));
-  run.off_track_events = 2;
-  EXPECT_THAT(to_table(run), HasSubstr("completed, but left the road"));
   run.completed = false;
   run.end_reason = "time limit of 600 s reached";
   EXPECT_THAT(to_table(run), HasSubstr("not completed: time limit of 600 s reached"));
+  run.track = "caf\xe9.csv";
+  EXPECT_TRUE(Tree::accept(to_json(run))) << "a name that is not UTF-8";
 }
 
 TEST(JsonReport, IsReadAsItWasWritten) {

@@ -70,28 +70,18 @@ TEST_F(Library, TheLeastFrictionIsOfARaceAlone) {
   }
 }
 
-TEST_F(Library, EveryShippedPresetLoadsAndSaysWhatItIs) {
+TEST_F(Library, EveryShippedFileLoadsAndSaysWhatItIs) {
   std::vector<std::string> names;
   for (const Entry& entry : entries(Shelf::kPreset)) {
     names.push_back(entry.name);
     EXPECT_GT(entry.description.size(), 20u) << entry.name;
-    const Result<Scenario> scenario = test::good(compose({"", {{"preset", entry.name}}}));
-    EXPECT_EQ(scenario->preset, entry.name);
+    EXPECT_EQ(test::good(compose({"", {{"preset", entry.name}}}))->preset, entry.name);
   }
-  for (const char* promised :
-       {"default", "delay-in-model", "fast-short-step", "measured-latency", "pid", "sixty-mph", "weighted"}) {
-    EXPECT_THAT(names, Contains(promised));
-  }
-}
-
-TEST_F(Library, EveryShippedScenarioLoads) {
+  EXPECT_THAT(names, testing::IsSupersetOf({"default", "delay-in-model", "fast-short-step",
+                                            "measured-latency", "pid", "sixty-mph", "weighted"}));
   EXPECT_FALSE(entries(Shelf::kScenario).empty());
   for (const Entry& entry : entries(Shelf::kScenario)) EXPECT_EQ(error_of({entry.name, {}}), "");
-}
-
-TEST_F(Library, PresetDefaultSaysWhatTheCodeSays) {
-  const Result<Scenario> scenario = test::good(compose({"", {{"preset", "default"}}}));
-  EXPECT_THAT(differences(*scenario, Scenario{}, ""), IsEmpty());
+  EXPECT_THAT(differences(*compose({"", {{"preset", "default"}}}), Scenario{}, ""), IsEmpty());
 }
 
 TEST_F(Library, CarFilesSayWhatTheCodeSays) {
@@ -128,51 +118,38 @@ TEST_F(Library, APresetMayBuildOnAnotherButNotOnItself) {
   EXPECT_THAT(error_of({"", {{"preset", loop}}}), HasSubstr("more than 8 presets"));
 }
 
-TEST_F(Library, NamesWhatIsKnownWhenANameIsNot) {
-  EXPECT_THAT(error_of({"", {{"preset", "sixty_mph"}}}),
-              HasSubstr("preset: got \"sixty_mph\", expected a file or one of"));
-  EXPECT_THAT(error_of({"", {{"preset", "sixty_mph"}}}), HasSubstr("(did you mean sixty-mph?)"));
-  EXPECT_THAT(error_of({"", {{"car", "rode-car"}}}), HasSubstr("(did you mean road-car?)"));
-  EXPECT_THAT(error_of({"", {{"track", "nowhere"}}}), HasSubstr("track: got \"nowhere\""));
-  EXPECT_THAT(error_of({"", {{"track", "no/such.csv"}}}),
-              HasSubstr("track: got no/such.csv, expected a file that exists"));
-}
-
-TEST_F(Library, SaysWhereAnUnknownNameStands) {
-  const std::string file = write("run.yaml", "preset: nobody\nlaps: 1\ncar: rode-car\ntrack: nowhere\n");
-  const std::string message = error_of({file, {}});
-  EXPECT_THAT(message, HasSubstr("run.yaml:1: preset: got \"nobody\""));
-  EXPECT_THAT(message, HasSubstr("run.yaml:3: car: got \"rode-car\""));
-  EXPECT_THAT(message, HasSubstr("run.yaml:4: track: got \"nowhere\""));
+TEST_F(Library, NamesAllFaultsWhereTheyStandAndWhatIsKnown) {
   const std::string preset = write("mine.yaml", "# builds on nothing\npreset: no-such\n");
-  EXPECT_THAT(error_of({"", {{"preset", preset}}}), HasSubstr("mine.yaml:2: preset: got \"no-such\""));
+  const std::string car = write("car.yaml", "plant: udacity\nlaps: 3\n");
+  struct Fault {
+    Request request;
+    std::vector<const char*> words;
+  };
+  for (const auto& [request, words] : std::vector<Fault>{
+           {{"", {{"preset", "sixty_mph"}}},
+            {"preset: got \"sixty_mph\", expected a file or one of", "(did you mean sixty-mph?)"}},
+           {{"", {{"car", "rode-car"}}}, {"(did you mean road-car?)"}},
+           {{"", {{"track", "nowhere"}}}, {"track: got \"nowhere\""}},
+           {{"", {{"track", "no/such.csv"}}}, {"track: got no/such.csv, expected a file that exists"}},
+           {{write("run.yaml", "preset: nobody\nlaps: 1\ncar: rode-car\ntrack: nowhere\n"), {}},
+            {"run.yaml:1: preset: got \"nobody\"", "run.yaml:3: car: got \"rode-car\"",
+             "run.yaml:4: track: got \"nowhere\""}},
+           {{"", {{"preset", preset}}}, {"mine.yaml:2: preset: got \"no-such\""}},
+           {{write("layers.yaml", "laps: -1\nlatency_ms: slow\n"),
+             {{"preset", "nobody"}, {"seed", "-1"}, {"latenzy_ms", "1"}}},
+            {"layers.yaml:1: laps: got -1, expected an integer in [0, 10000]",
+             "layers.yaml:2: latency_ms: got slow", "preset: got \"nobody\"", "seed: got -1",
+             "latenzy_ms: got an unknown key"}},
+           {{"", {{"car", car}}},
+            {"car.yaml:2: laps: got a setting of a run, expected only plant, plant_params, vehicle"}}}) {
+    for (const char* each : words) EXPECT_THAT(error_of(request), HasSubstr(each));
+  }
 }
 
-TEST_F(Library, TellsAllFaultsOfAllLayersAtOnce) {
-  const std::string file = write("run.yaml", "laps: -1\nlatency_ms: slow\n");
-  const std::string message = error_of({file, {{"preset", "nobody"}, {"seed", "-1"}, {"latenzy_ms", "1"}}});
-  EXPECT_THAT(message, HasSubstr("run.yaml:1: laps: got -1, expected an integer in [0, 10000]"));
-  EXPECT_THAT(message, HasSubstr("run.yaml:2: latency_ms: got slow"));
-  EXPECT_THAT(message, HasSubstr("preset: got \"nobody\""));
-  EXPECT_THAT(message, HasSubstr("seed: got -1"));
-  EXPECT_THAT(message, HasSubstr("latenzy_ms: got an unknown key"));
-}
-
-TEST_F(Library, ACarFileHoldsOnlyACar) {
-  const std::string file = write("car.yaml", "plant: udacity\nlaps: 3\n");
-  EXPECT_THAT(
-      error_of({"", {{"car", file}}}),
-      HasSubstr("car.yaml:2: laps: got a setting of a run, expected only plant, plant_params, vehicle"));
-}
-
-TEST_F(Library, FilesNamedInAScenarioAreFoundBesideIt) {
+TEST_F(Library, FindsFilesBesideAScenarioAndInTheFolderTheEnvironmentNames) {
   write("tracks/mine.csv", "# a track\n");
-  const std::string file = write("run.yaml", "track: tracks/mine.csv\n");
-  const Result<Scenario> scenario = test::good(compose({file, {}}));
+  const auto scenario = test::good(compose({write("run.yaml", "track: tracks/mine.csv\n"), {}}));
   EXPECT_EQ(scenario->track, (folder_ / "tracks/mine.csv").string());
-}
-
-TEST_F(Library, FindsFilesInTheFolderTheEnvironmentNames) {
   write("presets/from-elsewhere.yaml", "# Mine\ncontroller: pid\n");
   ::setenv("CHICANE_DATA_DIR", folder_.c_str(), 1);
   const Result<std::string> found = locate(Shelf::kPreset, "from-elsewhere");
@@ -180,9 +157,6 @@ TEST_F(Library, FindsFilesInTheFolderTheEnvironmentNames) {
   ASSERT_TRUE(found) << found.error().message;
   EXPECT_EQ(*found, (folder_ / "presets/from-elsewhere.yaml").string());
   EXPECT_FALSE(locate(Shelf::kPreset, "from-elsewhere"));
-}
-
-TEST_F(Library, AFolderIsNotAFile) {
   const Error error = read_file(folder_.string()).error();
   EXPECT_EQ(error.code, ErrorCode::kNotFound);
   EXPECT_THAT(error.message, HasSubstr("got a folder, expected a file"));
@@ -244,16 +218,17 @@ TEST(Origin, ReadsTheBandsThatIdentifyWrites) {
   EXPECT_TRUE(std::isnan(found[1].low) && std::isnan(found[1].high));
 }
 
-TEST(Origin, MarksOfOthersAreNoBands) {
-  EXPECT_THAT(identified_in("vehicle:\n  a: 1  # [assumed]\n  b: 2  # [log] from a paper\n"), IsEmpty());
-  EXPECT_THAT(identified_in("a: x  # [log] 1 to 2\nb: 1  # [log] 1 to\n: 1  # [log] to 2\n"), IsEmpty());
-}
-
-TEST(Origin, TheHeadOfAFileIsItsRemarks) {
+TEST(Origin, IsOfOurMarksAndOfTheHeadOfAFileOnly) {
+  for (const char* text : {"vehicle:\n  a: 1  # [assumed]\n  b: 2  # [log] from a paper\n",
+                           "a: x  # [log] 1 to 2\nb: 1  # [log] 1 to\n: 1  # [log] to 2\n"})
+    EXPECT_THAT(identified_in(text), IsEmpty());
   EXPECT_THAT(head_remarks("# SPDX-License-Identifier: MIT\n# A hall\n# closed=true, spacing_m=1\n"
                            "# note: width=9 assumed\n# x_m,y_m\n1,2\n# behind\n"),
               ElementsAre("A hall", "width=9 assumed"));
   EXPECT_THAT(head_remarks("plant: x\n# late\n"), IsEmpty());
+  const auto content = test::good(
+      parse_track("# note: track_scale=2\n# note: x_m, y_m\nx_m,y_m\n0,0\n9,0\n9,9\n0,9\n", "a.csv"));
+  EXPECT_EQ(content->points.size(), 4U) << "a note is no setting";
 }
 
 TEST(Origin, AHeadOfAnyBytesBecomesShortUtf8) {
@@ -289,36 +264,20 @@ TEST(Origin, AnImportedRoadSaysWhatItWasReadFromAndWhatWasAssumed) {
               Contains(HasSubstr("width: not in the file, 4.5 m left and 4.5 m right assumed")));
 }
 
-TEST(Origin, ANoteOfARoadIsNoSetting) {
-  const Result<TrackFile> content = test::good(
-      parse_track("# note: track_scale=2\n# note: x_m, y_m\nx_m,y_m\n0,0\n9,0\n9,9\n0,9\n", "a.csv"));
-  EXPECT_EQ(content->points.size(), 4U);
-}
-
 std::vector<std::string> folders_of(const DataOrigins& origins) { return data_folders(origins, "tracks"); }
 
-/// The places that are searched whatever the origins are.
-std::size_t count_of_fixed_places() { return folders_of({}).size(); }
-
-TEST(DataFolders, AreTheWorkingFolderFirstAndTheSystemLast) {
-  const std::vector<std::string> folders = folders_of({});
-  EXPECT_EQ(folders.front(), "./tracks");
-  EXPECT_EQ(folders.back(), "/usr/share/chicane/tracks");
-}
-
-TEST(DataFolders, AreBesideTheProgramAndInThePrefixAndOneFolderFurtherUp) {
+TEST(DataFolders, AreInTheirOrderAndNamedOnce) {
+  const std::vector<std::string> fixed = folders_of({});
+  EXPECT_EQ(fixed.front(), "./tracks");
+  EXPECT_EQ(fixed.back(), "/usr/share/chicane/tracks");
   std::vector<std::string> folders = folders_of({.program = "/none/such/bin/program"});
   folders.resize(4);
   EXPECT_THAT(folders, ElementsAre("./tracks", "/none/such/bin/share/chicane/tracks",
                                    "/none/such/share/chicane/tracks", "/none/share/chicane/tracks"));
-}
-
-TEST(DataFolders, OfTheEnvironmentComeBeforeTheProgramsAndTheLibrarysAfter) {
-  std::vector<std::string> folders =
-      folders_of({.environment = "/mine",
-                  .program = "/none/bin/python3",
-                  .shared_object = "/none/lib/module/chicane.so",
-                  .header = "/none/prefix/include/chicane/protocol/data_folders.hpp"});
+  folders = folders_of({.environment = "/mine",
+                        .program = "/none/bin/python3",
+                        .shared_object = "/none/lib/module/chicane.so",
+                        .header = "/none/prefix/include/chicane/protocol/data_folders.hpp"});
   const auto place = [&](std::string_view folder) {
     return std::find(folders.begin(), folders.end(), folder) - folders.begin();
   };
@@ -326,13 +285,10 @@ TEST(DataFolders, OfTheEnvironmentComeBeforeTheProgramsAndTheLibrarysAfter) {
   EXPECT_LT(place("/none/share/chicane/tracks"), place("/none/lib/module/share/chicane/tracks"));
   EXPECT_LT(place("/none/lib/module/share/chicane/tracks"), place("/none/prefix/share/chicane/tracks"));
   EXPECT_LT(place("/none/prefix/share/chicane/tracks"), place("/usr/share/chicane/tracks"));
-}
-
-TEST(DataFolders, AreNamedOnce) {
-  const DataOrigins origins{.program = "/none/bin/program", .shared_object = "/none/bin/program"};
-  EXPECT_EQ(folders_of(origins).size(), count_of_fixed_places() + 3);
+  EXPECT_EQ(folders_of({.program = "/none/bin/program", .shared_object = "/none/bin/program"}).size(),
+            fixed.size() + 3);
   for (const std::string& here : {std::string("."), std::filesystem::current_path().string()})
-    EXPECT_EQ(folders_of({.environment = here}), folders_of({})) << "the working folder is the first one";
+    EXPECT_EQ(folders_of({.environment = here}), fixed) << "the working folder is the first one";
 }
 
 TEST(DataOrigins, AreThisProgramAndNoInstallation) {

@@ -8,7 +8,7 @@
 #include "protocol/cdr_reader.hpp"
 #include "protocol/viewer_samples.hpp"
 #include "support/chicane_test.hpp"
-#include "support/folder.hpp"
+#include "support/kept_text.hpp"
 #include "support/roads.hpp"
 
 namespace chicane::protocol {
@@ -40,8 +40,14 @@ double last_gap(const std::string& bytes) {
   return reader.number();
 }
 
-TEST(RosMessages, ALimitThatIsNotKnownSaysWhyAndLapsHaveNoGap) {
+TEST(RosMessages, ALimitThatIsNotKnownSaysWhyAndLapsBeforeItHaveNoGap) {
   protocol::Run run = samples::run();
+  ASSERT_TRUE(run.limit.found);
+  const auto gap = [&] { return last_gap(encode("/chicane/lap", samples::frame(), run)); };
+  run.limit.first_lap = samples::frame().completed_lap.lap;
+  EXPECT_TRUE(std::isfinite(gap()));
+  ++run.limit.first_lap;
+  EXPECT_TRUE(std::isnan(gap())) << "begun with another car";
   run.limit = {.why_not = "the road is open", .first_lap = 4};
   const std::string bytes = encode("/chicane/limit", samples::frame(), run);
   CdrReader reader{bytes};
@@ -52,29 +58,7 @@ TEST(RosMessages, ALimitThatIsNotKnownSaysWhyAndLapsHaveNoGap) {
   EXPECT_EQ(reader.get<std::uint32_t>(), 4U);
   for (int i = 0; i < 4; ++i) EXPECT_EQ(reader.get<std::uint32_t>(), 0U) << "no corners, no causes";
   EXPECT_TRUE(reader.is_at_end());
-  EXPECT_TRUE(std::isnan(last_gap(encode("/chicane/lap", samples::frame(), run))));
-}
-
-TEST(RosMessages, ALapBegunWithAnotherCarHasNoGap) {
-  protocol::Run run = samples::run();
-  ASSERT_TRUE(run.limit.found);
-  const auto gap = [&] { return last_gap(encode("/chicane/lap", samples::frame(), run)); };
-  run.limit.first_lap = samples::frame().completed_lap.lap;
-  EXPECT_TRUE(std::isfinite(gap()));
-  ++run.limit.first_lap;
   EXPECT_TRUE(std::isnan(gap()));
-}
-
-TEST(RosMessages, PlanOfAnySizeStaysInsideItsArrays) {
-  telemetry::Frame frame = samples::frame();
-  for (const int size : {-5, 0, controller::Plan::kCapacity, 100'000}) {
-    frame.result.plan.size = size;
-    const std::string bytes = encode("/chicane/plan", frame);
-    CdrReader reader{bytes};
-    reader.seconds();
-    EXPECT_EQ(reader.get<std::uint32_t>(),
-              static_cast<std::uint32_t>(std::clamp(size, 0, controller::Plan::kCapacity)));
-  }
 }
 
 TEST(RosMessages, DiagnosticsSayInWordsWhoIsInControl) {
@@ -107,7 +91,7 @@ TEST(RosMessages, DiagnosticsSayInWordsWhoIsInControl) {
   EXPECT_EQ(judge(controller::Rung::kController, kNone).first, 0);
 }
 
-TEST(RosMessages, EveryTopicEncodesAFrameFullOfNotANumber) {
+TEST(RosMessages, EveryTopicEncodesAFrameFullOfNotANumberAndOfPlansOfAnySize) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   telemetry::Frame frame = samples::frame();
   frame.time = nan;
@@ -116,16 +100,30 @@ TEST(RosMessages, EveryTopicEncodesAFrameFullOfNotANumber) {
   frame.result.command = {nan, nan};
   for (auto& point : frame.result.plan.points) point = {nan, nan, nan, nan, nan, {nan, nan}};
   for (const RosTopic& each : ros_topics()) EXPECT_GE(encode(each.name, frame).size(), 12U) << each.name;
+  for (const int size : {-5, 0, controller::Plan::kCapacity, 100'000}) {
+    frame.result.plan.size = size;
+    const std::string bytes = encode("/chicane/plan", frame);
+    CdrReader reader{bytes};
+    reader.seconds();
+    EXPECT_EQ(reader.get<std::uint32_t>(),
+              static_cast<std::uint32_t>(std::clamp(size, 0, controller::Plan::kCapacity)));
+  }
 }
 
-TEST(RosMessages, ServicesAskABooleanAndAnswerASentence) {
+TEST(RosMessages, ServicesAskABooleanOrATextAndAnswerASentence) {
   using namespace std::string_literals;
-  EXPECT_EQ(decode_set_bool("\0\1\0\0\1"s), true);
+  for (const std::string& bytes : {"\0\1\0\0\1"s, "\0\1\0\0\1\0\0\0"s})
+    EXPECT_EQ(decode_set_bool(bytes), true);
   EXPECT_EQ(decode_set_bool("\0\0\0\0\0"s), false);
-  EXPECT_EQ(decode_set_bool("\0\1\0\0\1\0\0\0"s), true);
-  EXPECT_EQ(decode_set_bool("\0\1\0\0"s), std::nullopt);
-  EXPECT_EQ(decode_set_bool("\0\1\0\0\2"s), std::nullopt);
-  EXPECT_EQ(decode_set_bool(""), std::nullopt);
+  for (const std::string& bytes : {"\0\1\0\0"s, "\0\1\0\0\2"s, ""s})
+    EXPECT_EQ(decode_set_bool(bytes), std::nullopt);
+  EXPECT_EQ(decode_ask("\0\1\0\0\3\0\0\0hi\0"s), "hi");
+  EXPECT_EQ(decode_ask("\0\0\0\0\0\0\0\3hi\0"s), "hi") << "big endian";
+  EXPECT_EQ(decode_ask("\0\1\0\0\1\0\0\0\0"s), "");
+  EXPECT_EQ(decode_ask("\0\1\0\0\0\0\0\0"s), "") << "some writers send no zero for an empty text";
+  for (const std::string& bytes : {""s, "\0\1\0\0"s, "\0\1\0\0\4\0\0\0hi\0"s, "\0\1\0\0\2\0\0\0hi\0"s,
+                                   "\0\1\0\0\377\377\377\377hi\0"s, "\0\2\0\0\3\0\0\0hi\0"s})
+    EXPECT_FALSE(decode_ask(bytes)) << bytes.size();
   const std::string answer = encode_service_response(true, "paused");
   CdrReader reader{answer};
   EXPECT_EQ(reader.get<std::uint8_t>(), 1);
@@ -159,26 +157,18 @@ TEST(RosMessages, SchemasHoldEveryTypeTheyReferToOnce) {
   EXPECT_EQ(ros_schema("no_msgs/msg/Such"), "");
 }
 
-/// The dashboard's tests decode the same bytes and compare their values. CHICANE_WRITE_FIXTURES=1 renews them
-/// after a wanted change: cmake --build --preset release --target renew_fixtures
+/// The dashboard's tests decode the same bytes and compare their values.
 TEST(RosMessages, BytesEqualTheFixturesTheBrowserReads) {
-  const std::filesystem::path folder =
-      std::filesystem::path(CHICANE_SOURCE_DIR) / "tests/protocol/fixtures/ros";
-  constexpr std::string_view kRenew = "; wanted? cmake --build --preset release --target renew_fixtures";
-  const bool renew = std::getenv("CHICANE_WRITE_FIXTURES") != nullptr;
+  const std::string folder = "protocol/fixtures/ros/";
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const RosTopic& each : ros_topics()) {
     std::string file{each.name.substr(1)};
     std::replace(file.begin(), file.end(), '/', '_');
     file += ".bin";
-    const std::string bytes = encode(each.name);
     list.push_back({{"topic", each.name}, {"type", each.type}, {"file", file}, {"schema", each.schema}});
-    if (renew) std::ofstream(folder / file, std::ios::binary) << bytes;
-    EXPECT_EQ(bytes, test::content_of(folder / file)) << each.name << kRenew;
+    test::expect_kept(folder + file, encode(each.name));
   }
-  if (renew) std::ofstream(folder / "topics.json") << list.dump(1) << '\n';
-  EXPECT_EQ(nlohmann::ordered_json::parse(test::content_of(folder / "topics.json"), nullptr, false), list)
-      << kRenew;
+  test::expect_kept(folder + "topics.json", list.dump(1) + "\n");
 }
 
 TEST(RosMessages, RoadLinesCloseAndKeepTheirWidths) {
@@ -191,18 +181,6 @@ TEST(RosMessages, RoadLinesCloseAndKeepTheirWidths) {
     // Counter-clockwise: left is inside. 0.2 m allows for the smoothing of the centre line.
     EXPECT_NEAR(lines.left[i].norm(), 47.0, 0.2);
     EXPECT_NEAR(lines.right[i].norm(), 55.0, 0.2);
-  }
-}
-
-TEST(RosMessages, ReadTheTextOfAQuestionAndNothingElse) {
-  using std::string_literals::operator""s;
-  EXPECT_EQ(decode_ask("\0\1\0\0\3\0\0\0hi\0"s), "hi");
-  EXPECT_EQ(decode_ask("\0\0\0\0\0\0\0\3hi\0"s), "hi") << "big endian";
-  EXPECT_EQ(decode_ask("\0\1\0\0\1\0\0\0\0"s), "");
-  EXPECT_EQ(decode_ask("\0\1\0\0\0\0\0\0"s), "") << "some writers send no zero for an empty text";
-  for (const std::string& bytes : {""s, "\0\1\0\0"s, "\0\1\0\0\4\0\0\0hi\0"s, "\0\1\0\0\2\0\0\0hi\0"s,
-                                   "\0\1\0\0\377\377\377\377hi\0"s, "\0\2\0\0\3\0\0\0hi\0"s}) {
-    EXPECT_FALSE(decode_ask(bytes)) << bytes.size();
   }
 }
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/protocol/schema.hpp"
 
-#include <nlohmann/json.hpp>
 #include "chicane/base/random.hpp"
-#include "chicane/protocol/schema_json.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
 #include "support/chicane_test.hpp"
 #include "support/comma_locale.hpp"
@@ -193,14 +191,11 @@ TEST(Schema, OnlyWhatMakesTheRunAnotherOneIsNotLive) {
                           "guard.margin_m", "guard.blind_time_s"}));
 }
 
-TEST(Schema, SuggestsWhatWasMeant) {
+TEST(Schema, SuggestsWhatWasMeantAndCutsALongOrBinaryText) {
   EXPECT_THAT(error_of("latency", "1"), HasSubstr("did you mean latency_ms?"));
   EXPECT_THAT(error_of("cubic_mpc.horizon_step", "1"), HasSubstr("did you mean cubic_mpc.horizon_steps?"));
   EXPECT_THAT(error_of("steer_limit_deg", "1"), HasSubstr("did you mean vehicle.steer_limit_deg?"));
   EXPECT_THAT(error_of("xyzzy", "1"), Not(HasSubstr("did you mean")));
-}
-
-TEST(Schema, ALongOrBinaryKeyOrValueIsCutInTheMessage) {
   EXPECT_LT(error_of(std::string(100000, 'k'), "1").size(), 300u);
   EXPECT_LT(error_of("latency_ms", std::string(100000, '7')).size(), 300u);
   EXPECT_THAT(error_of("latency_ms", "a\nb\x1b[31m"), HasSubstr("a?b?[31m"));
@@ -226,44 +221,6 @@ TEST(Schema, DelayInsideTheModelMustBeOneStep) {
   EXPECT_EQ(contradictions(scenario)[0].key, "cubic_mpc.latency_ms");
   scenario.controller = "pid";  // then it has no effect
   EXPECT_TRUE(contradictions(scenario).empty());
-}
-
-nlohmann::json rows(const Scenario& defaults, std::string_view only, std::span<const Control> controls = {}) {
-  Scenario started;
-  started.seed = 4;
-  return nlohmann::json::parse(schema_json(
-      defaults, started, [&](const Parameter& row) { return row.key == only; }, controls));
-}
-
-TEST(SchemaJson, DescribesATunableWithUnitRangeDefaultAndMeaning) {
-  Scenario defaults;
-  defaults.seed = 17;
-  const nlohmann::json all = rows(defaults, "seed");
-  ASSERT_EQ(all.size(), 1u);
-  EXPECT_EQ(all[0]["key"], "seed");
-  EXPECT_EQ(all[0]["default"], 17);
-  EXPECT_EQ(all[0]["start"], 4);
-  EXPECT_EQ(all[0]["kind"], "integer");
-  EXPECT_TRUE(all[0].contains("minimum"));
-  EXPECT_TRUE(all[0].contains("maximum"));
-  EXPECT_FALSE(all[0]["meaning"].get<std::string>().empty());
-}
-
-TEST(SchemaJson, OffersWhatIsAskedForAndTheControlsBehind) {
-  const Control hands{"manual.steer", number_of(-1.0, 1.0, "A person's hands."), 0.0};
-  const nlohmann::json all = rows({}, "laps", {&hands, 1});
-  ASSERT_EQ(all.size(), 2u);
-  EXPECT_EQ(all[0]["key"], "laps");
-  EXPECT_EQ(all[1]["key"], "manual.steer");
-  EXPECT_EQ(all[1]["minimum"], -1.0);
-  EXPECT_EQ(all[1]["meaning"], "A person's hands.");
-}
-
-TEST(SchemaJson, WritesInfinityAsText) {
-  const nlohmann::json all = rows({}, "vehicle.drive_power_per_mass_wpkg");
-  ASSERT_EQ(all.size(), 1u);
-  EXPECT_EQ(all[0]["default"], "inf");
-  EXPECT_EQ(all[0]["may_be_infinite"], true);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "protocol/hostile_telemetry.hpp"
 #include "support/chicane_test.hpp"
 #include "support/comma_locale.hpp"
+#include "support/expect_said.hpp"
 
 namespace chicane::protocol {
 namespace {
@@ -78,56 +79,61 @@ TEST(UdacityTelemetry, OwnMessagesComeBackAsTheyWere) {
   EXPECT_EQ(received.waypoints[1], sent.waypoints[1]);
 }
 
-TEST(UdacityTelemetry, NullMeansAPersonDrives) {
+TEST(UdacityTelemetry, PacketsAreToldApart) {
   EXPECT_TRUE(std::holds_alternative<UdacityManual>(parse_telemetry(R"(42["telemetry",null])")));
   EXPECT_EQ(encode_manual_telemetry(), R"(42["telemetry",null])");
   EXPECT_EQ(encode_manual(), R"(42["manual",{}])");
-}
-
-TEST(UdacityTelemetry, PacketsAreToldApart) {
-  const auto packet = [](const char* text) { return std::get<UdacityPacket>(parse_telemetry(text)); };
-  EXPECT_EQ(packet("0{\"sid\":1}"), UdacityPacket::kOpen);
-  EXPECT_EQ(packet("1"), UdacityPacket::kClose);
-  EXPECT_EQ(packet("2"), UdacityPacket::kPing);
-  EXPECT_EQ(packet("2probe"), UdacityPacket::kPing);
-  EXPECT_EQ(packet("3"), UdacityPacket::kPong);
-  EXPECT_EQ(packet("40"), UdacityPacket::kConnect);
-  EXPECT_EQ(packet("40{}"), UdacityPacket::kConnect);
-  EXPECT_EQ(packet("41"), UdacityPacket::kDisconnect);
-  EXPECT_EQ(packet("5"), UdacityPacket::kIgnored);
-  EXPECT_EQ(packet("43[]"), UdacityPacket::kIgnored);
-}
-
-TEST(UdacityTelemetry, StockClientsMayAskForAnAcknowledgement) {
-  std::string text = kRealTelemetry;
-  text.insert(2, "17");
-  EXPECT_TRUE(std::holds_alternative<model::Measurement>(parse_telemetry(text)));
+  for (const auto& [text, packet] : {std::pair{"0{\"sid\":1}", UdacityPacket::kOpen},
+                                     {"1", UdacityPacket::kClose},
+                                     {"2", UdacityPacket::kPing},
+                                     {"2probe", UdacityPacket::kPing},
+                                     {"3", UdacityPacket::kPong},
+                                     {"40", UdacityPacket::kConnect},
+                                     {"40{}", UdacityPacket::kConnect},
+                                     {"41", UdacityPacket::kDisconnect},
+                                     {"5", UdacityPacket::kIgnored},
+                                     {"43[]", UdacityPacket::kIgnored}})
+    EXPECT_EQ(std::get<UdacityPacket>(parse_telemetry(text)), packet) << text;
+  const std::string acknowledged = std::string("4217") + (kRealTelemetry + 2);
+  EXPECT_TRUE(std::holds_alternative<model::Measurement>(parse_telemetry(acknowledged)))
+      << "stock clients may ask for an acknowledgement";
 }
 
 TEST(UdacityTelemetry, OtherScenesAreNamed) {
-  const auto what = [](const std::string& data) {
-    const auto message = parse_telemetry("42[\"telemetry\"," + data + "]");
-    return std::get<UdacityForeign>(message).what;
-  };
-  EXPECT_THAT(what(R"({"cte":"0.76","speed":"0.4","steering_angle":"0","image":"x"})"),
-              HasSubstr("PID Controller"));
-  EXPECT_THAT(what(R"({"steering_angle":"0,0","throttle":"0","speed":"0","image":"x"})"),
-              HasSubstr("Behavioral Cloning"));
-  EXPECT_THAT(what(R"({"x":1,"y":2,"s":3,"d":4,"yaw":5,"speed":6,"sensor_fusion":[]})"),
-              HasSubstr("Path Planning"));
-  EXPECT_THAT(what(R"({"sensor_measurement":"L 1 2"})"), HasSubstr("Kalman Filters"));
-  EXPECT_THAT(what(R"({"sense_x":"1","sense_observations_x":"1 2"})"), HasSubstr("Kidnapped Vehicle"));
-  EXPECT_THAT(what(R"({"x":1,"y":2,"z":3,"yaw":4,"velocity":5})"), HasSubstr("System Integration"));
-  const auto event = parse_telemetry(R"(42["hello",{}])");
-  EXPECT_THAT(std::get<UdacityForeign>(event).what, HasSubstr("the event \"hello\""));
+  test::expect_said(
+      [](const std::string& event) {
+        const auto message = parse_telemetry("42[" + event + "]");
+        return std::get<UdacityForeign>(message).what;
+      },
+      {{R"("telemetry",{"cte":"0.76","speed":"0.4","steering_angle":"0","image":"x"})", "PID Controller"},
+       {R"("telemetry",{"steering_angle":"0,0","throttle":"0","speed":"0","image":"x"})",
+        "Behavioral Cloning"},
+       {R"("telemetry",{"x":1,"y":2,"s":3,"d":4,"yaw":5,"speed":6,"sensor_fusion":[]})", "Path Planning"},
+       {R"("telemetry",{"sensor_measurement":"L 1 2"})", "Kalman Filters"},
+       {R"("telemetry",{"sense_x":"1","sense_observations_x":"1 2"})", "Kidnapped Vehicle"},
+       {R"("telemetry",{"x":1,"y":2,"z":3,"yaw":4,"velocity":5})", "System Integration"},
+       {R"("hello",{})", "the event \"hello\""}});
+}
+
+/// Telemetry of a car that stands at the origin and sees nothing, but for these fields.
+std::string telemetry_with(nlohmann::json fields) {
+  nlohmann::json data{{"ptsx", nlohmann::json::array()},
+                      {"ptsy", nlohmann::json::array()},
+                      {"psi", 0},
+                      {"x", 0},
+                      {"y", 0},
+                      {"steering_angle", 0},
+                      {"throttle", 0},
+                      {"speed", 0}};
+  data.update(fields);
+  return "42" + nlohmann::json{"telemetry", data}.dump();
 }
 
 TEST(UdacityTelemetry, FewWaypointsAreTheControllersBusiness) {
-  for (const auto& [points, count] : {std::pair{"[]", 0}, {"[1]", 1}, {"[1,1]", 2}}) {
-    const auto message =
-        parse_telemetry(R"(42["telemetry",{"ptsx":)" + std::string(points) + R"(,"ptsy":)" + points +
-                        R"(,"psi":0,"x":0,"y":0,"steering_angle":0,"throttle":0,"speed":0}])");
-    ASSERT_TRUE(std::holds_alternative<model::Measurement>(message)) << points;
+  for (int count = 0; count < 3; ++count) {
+    const std::vector<int> points(static_cast<std::size_t>(count), 1);
+    const auto message = parse_telemetry(telemetry_with({{"ptsx", points}, {"ptsy", points}}));
+    ASSERT_TRUE(std::holds_alternative<model::Measurement>(message)) << count;
     EXPECT_EQ(std::get<model::Measurement>(message).waypoint_count, count);
   }
 }
@@ -141,9 +147,6 @@ TEST(UdacityTelemetry, HostileMessagesAreRefusedInWordsThatNameTheField) {
     EXPECT_THAT(reason, HasSubstr(hostile.words)) << hostile.text.substr(0, 120);
     EXPECT_LT(reason.size(), 250U) << hostile.text.substr(0, 120);
   }
-}
-
-TEST(UdacityTelemetry, NoPrefixOfARealMessageIsTakenForAMeasurement) {
   const std::string text = kRealTelemetry;
   for (std::size_t size = 0; size < text.size(); ++size)
     EXPECT_FALSE(std::holds_alternative<model::Measurement>(parse_telemetry(text.substr(0, size)))) << size;
@@ -254,35 +257,39 @@ TEST(UdacityReplyFromController, TakesEveryShapeOfTheLinesThatTheOriginalTakes) 
     EXPECT_EQ(steer->plan.size(), shape.plan) << shape.lists[2];
     EXPECT_DOUBLE_EQ(steer->command.steer, -0.25 * kFullLock);
   }
-}
-
-TEST(UdacityReplyFromController, RefusesTheShapesOfTheLinesOnWhichTheOriginalStalls) {
-  const std::vector<std::pair<std::array<std::string, 4>, std::string>> stalling{
-      {{"", "[]", "[]", "[]"}, "next_x: missing"},
-      {{"[]", "[]", "", "[]"}, "mpc_x: missing"},
-      {{"[1]", "", "[]", "[]"}, "next_y: missing"},
-      {{"[1,2]", "[1]", "[]", "[]"}, "next_x has 2 points, next_y only 1"},
-      {{"[1]", "0", "[]", "[]"}, "next_x has 1 points, next_y only 0"},
-      {{"[1]", "null", "[]", "[]"}, "next_y only 0"},
-      {{"[]", "[]", R"(["1"])", "[1]"}, R"(mpc_x[0]: got "1", expected a number)"},
-      {{"[]", "[]", "[1]", "[null]"}, "mpc_y[0]: got null"},
-      {{"[[1]]", "[1]", "[]", "[]"}, "next_x[0]: got an array of 1"},
-      {{"[1e39]", "[1]", "[]", "[]"}, "next_x[0]: got 1e+39"},
-  };
-  for (const auto& [lists, words] : stalling)
-    EXPECT_THAT(reason_of(parse_reply(steer_with(lists))), HasSubstr(words));
-}
-
-TEST(UdacityReplyFromController, TakesWhatElseTheOriginalTakes) {
   const std::string lines = R"("next_x":[],"next_y":[],"mpc_x":[],"mpc_y":[])";
   for (const std::string& data : {
            R"({"throttle":1,)" + lines + R"(,"steering_angle":0})",             // any order
            "{" + lines + R"(,"steering_angle":1e-7,"throttle":-3E0})",          // exponents, beyond the range
            "{" + lines + R"(,"steering_angle":0,"throttle":0,"note":[null]})",  // more keys
            "{ " + lines + "  ,\n\"steering_angle\" : 0 , \"throttle\" : 0 }",   // white space
-       }) {
+       })
     EXPECT_TRUE(std::holds_alternative<UdacitySteer>(parse_reply("42[\"steer\"," + data + "]"))) << data;
-  }
+}
+
+TEST(UdacityReplyFromController, WhatStallsTheOriginalIsSaidInWords) {
+  const std::string rest = R"("next_x":[],"next_y":[],"mpc_x":[],"mpc_y":[])";
+  test::expect_said(
+      [](const std::string& text) { return reason_of(parse_reply(text)); },
+      {{steer_with({"", "[]", "[]", "[]"}), "next_x: missing"},
+       {steer_with({"[]", "[]", "", "[]"}), "mpc_x: missing"},
+       {steer_with({"[1]", "", "[]", "[]"}), "next_y: missing"},
+       {steer_with({"[1,2]", "[1]", "[]", "[]"}), "next_x has 2 points, next_y only 1"},
+       {steer_with({"[1]", "0", "[]", "[]"}), "next_x has 1 points, next_y only 0"},
+       {steer_with({"[1]", "null", "[]", "[]"}), "next_y only 0"},
+       {steer_with({"[]", "[]", R"(["1"])", "[1]"}), R"(mpc_x[0]: got "1", expected a number)"},
+       {steer_with({"[]", "[]", "[1]", "[null]"}), "mpc_y[0]: got null"},
+       {steer_with({"[[1]]", "[1]", "[]", "[]"}), "next_x[0]: got an array of 1"},
+       {steer_with({"[1e39]", "[1]", "[]", "[]"}), "next_x[0]: got 1e+39"},
+       {R"(42["steer",{"throttle":0,)" + rest + "}]", "steering_angle: missing"},
+       {R"(42["steer",{"steering_angle":0,)" + rest + "}]", "throttle: missing"},
+       {R"(42["steer",{"steering_angle":null,"throttle":0,)" + rest + "}]", "steering_angle: got null"},
+       {R"(42["steer",{"steering_angle":"0.1","throttle":0,)" + rest + "}]", "steering_angle: got \"0.1\""},
+       {R"(42["steer"])", "steer: got nothing, expected an object"},
+       {R"(42["steer",{},1])", "name and one value"},
+       {R"(42["Steer",{}])", "got \"Steer\", expected \"steer\""},
+       {"steer", "does not begin with a digit"},
+       {"42[\"steer\",{\"throttle\":nan}]", "throttle: got nan, expected a number"}});
 }
 
 TEST(UdacityReplyFromController, SaysWhatWasClamped) {
@@ -299,22 +306,20 @@ TEST(UdacityReplyFromController, SaysWhatWasClamped) {
 }
 
 TEST(UdacityTelemetry, CarriesTheSimulatorsTimeInTheFieldThatIsNamed) {
-  const std::string text =
-      R"(42["telemetry",{"t":12.5,"ptsx":[],"ptsy":[],"psi":0,"x":0,"y":0,"steering_angle":0,"throttle":0,"speed":9}])";
+  const std::string text = telemetry_with({{"t", 12.5}, {"speed", 9}});
   EXPECT_EQ(std::get<model::Measurement>(parse_telemetry(text, "t")).time, 12.5);
   EXPECT_EQ(std::get<model::Measurement>(parse_telemetry(text)).time, 0.0);
   EXPECT_EQ(reason_of(parse_telemetry(text, "time")), "time: missing");
 }
 
 TEST(UdacityTelemetry, RoundingBeyondABorderIsTheBorder) {
-  const auto read = [](const std::string& throttle, const std::string& speed) {
-    return std::get<model::Measurement>(parse_telemetry(
-        R"(42["telemetry",{"ptsx":[],"ptsy":[],"psi":0,"x":0,"y":0,"steering_angle":0,"throttle":)" +
-        throttle + R"(,"speed":)" + speed + "}]"));
+  const auto read = [](double throttle, double speed) {
+    return std::get<model::Measurement>(
+        parse_telemetry(telemetry_with({{"throttle", throttle}, {"speed", speed}})));
   };
-  EXPECT_EQ(read("1.0000001", "-1e-7").speed, 0.0);
-  EXPECT_EQ(read("1.0000001", "-1e-7").throttle, 1.0);
-  EXPECT_EQ(read("-1.0000001", "-0.0").throttle, -1.0);
+  EXPECT_EQ(read(1.0000001, -1e-7).speed, 0.0);
+  EXPECT_EQ(read(1.0000001, -1e-7).throttle, 1.0);
+  EXPECT_EQ(read(-1.0000001, -0.0).throttle, -1.0);
 }
 
 safety::StopPlan stop_of(int size) {
@@ -329,13 +334,16 @@ safety::StopPlan stop_of(int size) {
   return stop;
 }
 
-TEST(UdacityStopPlan, TravelsBetweenTheSixFieldsInTheWiresSigns) {
-  EXPECT_EQ(encode_steer({.steer = -0.5 * kFullLock}, {}, {}, stop_of(2), 7.0),
+TEST(UdacityStopPlan, TravelsBetweenTheSixFieldsInTheWiresSignsUnlessItIsNotFinite) {
+  safety::StopPlan stop = stop_of(2);
+  EXPECT_EQ(encode_steer({.steer = -0.5 * kFullLock}, {}, {}, stop, 7.0),
             R"(42["steer",{"mpc_x":[],"mpc_y":[],"next_x":[],"next_y":[],"steering_angle":0.5,)"
             R"("stop_plan":[[0.25,0,20,-0.25,-0.5],[0.35,1.5,19.9,-0.25,-0.5]],"throttle":0}])");
+  stop.points[1].speed = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(encode_steer({}, {}, {}, stop, 7.0), encode_steer({}, {}, {}));
 }
 
-TEST(UdacityStopPlan, ComesBackAsItWasCountedFromTheTelemetry) {
+TEST(UdacityStopPlan, ComesBackAsItWasCountedFromTheTelemetryAndALongOneWithItsEnds) {
   const auto reply = parse_reply(encode_steer({}, {}, {}, stop_of(30), 7.0));
   const safety::StopPlan& stop = std::get<UdacitySteer>(reply).stop;
   ASSERT_EQ(stop.size, 30);
@@ -344,22 +352,13 @@ TEST(UdacityStopPlan, ComesBackAsItWasCountedFromTheTelemetry) {
   EXPECT_NEAR(stop.points[29].speed, 17.1, 1e-3);
   EXPECT_NEAR(stop.points[29].command.steer, 0.25 * kFullLock, 1e-4);  // left is left
   EXPECT_NEAR(stop.points[29].command.throttle, -0.5, 1e-4);
-}
-
-TEST(UdacityStopPlan, ALongOneIsThinnedAndKeepsItsEnds) {
   const std::string text = encode_steer({}, {}, {}, stop_of(safety::StopPlan::kCapacity), 7.25);
   EXPECT_LT(text.size(), 3000U);
-  const auto reply = parse_reply(text);
-  const safety::StopPlan& stop = std::get<UdacitySteer>(reply).stop;
-  ASSERT_EQ(stop.size, kMaxUdacityStop);
-  EXPECT_EQ(stop.points[0].time, 0.0);
-  EXPECT_NEAR(stop.points[kMaxUdacityStop - 1].distance, 1.5 * (safety::StopPlan::kCapacity - 1), 1e-3);
-}
-
-TEST(UdacityStopPlan, ANonFiniteOneIsNotSent) {
-  safety::StopPlan stop = stop_of(3);
-  stop.points[1].speed = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(encode_steer({}, {}, {}, stop, 7.0), encode_steer({}, {}, {}));
+  const auto thinned = parse_reply(text);
+  const safety::StopPlan& ends = std::get<UdacitySteer>(thinned).stop;
+  ASSERT_EQ(ends.size, kMaxUdacityStop);
+  EXPECT_EQ(ends.points[0].time, 0.0);
+  EXPECT_NEAR(ends.points[kMaxUdacityStop - 1].distance, 1.5 * (safety::StopPlan::kCapacity - 1), 1e-3);
 }
 
 TEST(UdacityStopPlan, WhatCouldNotBePlayedIsRefusedInWords) {
@@ -371,40 +370,22 @@ TEST(UdacityStopPlan, WhatCouldNotBePlayedIsRefusedInWords) {
   EXPECT_EQ(std::get<UdacitySteer>(reply_with("[]")).stop.size, 0);
   std::string many = "[[0,0,0,0,0]";
   for (int i = 0; i < kMaxUdacityStop; ++i) many += ",[0,0,0,0,0]";
-  const std::vector<std::pair<std::string, std::string>> list{
-      {"null", "stop_plan: got null, expected an array of at most 64 points"},
-      {"7", "stop_plan: got 7"},
-      {many + "]", "stop_plan: got an array of 65"},
-      {"[[0,0,0,0]]", "stop_plan[0]: got an array of 4, expected an array of 5 numbers"},
-      {"[7]", "stop_plan[0]: got 7"},
-      {"[[0,0,0,0,null]]", "stop_plan[0][4]: got null, expected a number"},
-      {R"([[0,0,0,0,"1"]])", R"(stop_plan[0][4]: got "1")"},
-      {"[[-1,0,0,0,0]]", "stop_plan[0][0]: got -1"},
-      {"[[6,0,0,0,0]]", "begins after 6 s"},
-      {"[[0,1e9,0,0,0]]", "stop_plan[0][1]: got 1000000000.0"},
-      {"[[0,0,-1,0,0]]", "stop_plan[0][2]: got -1"},
-      {"[[0,0,0,1.01,0]]", "stop_plan[0][3]: got 1.01"},
-      {"[[0,0,0,0,-2]]", "stop_plan[0][4]: got -2"},
-      {"[[1,0,0,0,0],[0,0,0,0,0]]", "stop_plan[1]: time and distance must not fall"},
-      {"[[1,9,0,0,0],[2,8,0,0,0]]", "stop_plan[1]: time and distance must not fall"},
-  };
-  for (const auto& [stop, words] : list) EXPECT_THAT(reason_of(reply_with(stop)), HasSubstr(words)) << stop;
-}
-
-TEST(UdacityReplyFromController, WhatStallsTheOriginalIsSaidInWords) {
-  const std::string rest = R"("next_x":[],"next_y":[],"mpc_x":[],"mpc_y":[])";
-  const std::vector<std::pair<std::string, std::string>> list{
-      {R"(42["steer",{"throttle":0,)" + rest + "}]", "steering_angle: missing"},
-      {R"(42["steer",{"steering_angle":0,)" + rest + "}]", "throttle: missing"},
-      {R"(42["steer",{"steering_angle":null,"throttle":0,)" + rest + "}]", "steering_angle: got null"},
-      {R"(42["steer",{"steering_angle":"0.1","throttle":0,)" + rest + "}]", "steering_angle: got \"0.1\""},
-      {R"(42["steer"])", "steer: got nothing, expected an object"},
-      {R"(42["steer",{},1])", "name and one value"},
-      {R"(42["Steer",{}])", "got \"Steer\", expected \"steer\""},
-      {"steer", "does not begin with a digit"},
-      {"42[\"steer\",{\"throttle\":nan}]", "throttle: got nan, expected a number"},
-  };
-  for (const auto& [text, words] : list) EXPECT_THAT(reason_of(parse_reply(text)), HasSubstr(words)) << text;
+  test::expect_said([&](const std::string& text) { return reason_of(reply_with(text)); },
+                    {{"null", "stop_plan: got null, expected an array of at most 64 points"},
+                     {"7", "stop_plan: got 7"},
+                     {many + "]", "stop_plan: got an array of 65"},
+                     {"[[0,0,0,0]]", "stop_plan[0]: got an array of 4, expected an array of 5 numbers"},
+                     {"[7]", "stop_plan[0]: got 7"},
+                     {"[[0,0,0,0,null]]", "stop_plan[0][4]: got null, expected a number"},
+                     {R"([[0,0,0,0,"1"]])", R"(stop_plan[0][4]: got "1")"},
+                     {"[[-1,0,0,0,0]]", "stop_plan[0][0]: got -1"},
+                     {"[[6,0,0,0,0]]", "begins after 6 s"},
+                     {"[[0,1e9,0,0,0]]", "stop_plan[0][1]: got 1000000000.0"},
+                     {"[[0,0,-1,0,0]]", "stop_plan[0][2]: got -1"},
+                     {"[[0,0,0,1.01,0]]", "stop_plan[0][3]: got 1.01"},
+                     {"[[0,0,0,0,-2]]", "stop_plan[0][4]: got -2"},
+                     {"[[1,0,0,0,0],[0,0,0,0,0]]", "stop_plan[1]: time and distance must not fall"},
+                     {"[[1,9,0,0,0],[2,8,0,0,0]]", "stop_plan[1]: time and distance must not fall"}});
 }
 
 }  // namespace
