@@ -26,31 +26,23 @@ TEST(Sensor, IsPerfectByDefault) {
   EXPECT_EQ(seen.throttle, 0.5);
 }
 
-TEST(Sensor, SameSeedSameNoiseOtherSeedOtherNoise) {
+TEST(Sensor, SameSeedSameNoiseOfTheStatedDeviationThatDoesNotShiftAnother) {
   const auto plant = moving_plant();
-  const SensorOptions options{.position_noise = 0.1, .heading_noise = 0.01, .speed_noise = 0.2};
-  Sensor a{options, 42};
-  Sensor b{options, 42};
-  Sensor c{options, 43};
-  for (int i = 0; i < 10; ++i) {
-    const model::Measurement first = a.sample(i, *plant);
-    const model::Measurement second = b.sample(i, *plant);
-    EXPECT_EQ(first.x, second.x);
-    EXPECT_EQ(first.speed, second.speed);
-    EXPECT_NE(first.x, c.sample(i, *plant).x);
-  }
-}
-
-TEST(Sensor, NoiseHasTheStatedDeviation) {
-  const auto plant = moving_plant();
-  Sensor sensor{{.position_noise = 0.5, .heading_noise = 0.02}, 7};
+  const SensorOptions options{.position_noise = 0.5, .heading_noise = 0.02, .speed_noise = 0.2};
+  Sensor a{options, 7}, b{options, 7}, c{options, 43}, only_speed{{.speed_noise = 0.2}, 7};
   double sum = 0.0, squares_x = 0.0, squares_psi = 0.0;
   const int count = 20000;
   for (int i = 0; i < count; ++i) {
-    const model::Measurement seen = sensor.sample(0.0, *plant);
+    const model::Measurement seen = a.sample(0.0, *plant);
     sum += (seen.x - plant->state().x) / count;
     squares_x += std::pow(seen.x - plant->state().x, 2) / count;
     squares_psi += std::pow(seen.psi - plant->state().psi, 2) / count;
+    if (i >= 10) continue;
+    const model::Measurement same = b.sample(0.0, *plant);
+    EXPECT_EQ(seen.x, same.x);
+    EXPECT_EQ(seen.speed, same.speed);
+    EXPECT_NE(seen.x, c.sample(0.0, *plant).x);
+    EXPECT_EQ(seen.speed, only_speed.sample(0.0, *plant).speed);
   }
   // Four standard errors: 0.5 / √n for the mean, σ / √(2 n) for the deviations.
   EXPECT_NEAR(sum, 0.0, 4.0 * 0.5 / std::sqrt(count));
@@ -58,14 +50,7 @@ TEST(Sensor, NoiseHasTheStatedDeviation) {
   EXPECT_NEAR(std::sqrt(squares_psi), 0.02, 4.0 * 0.02 / std::sqrt(2.0 * count));
 }
 
-TEST(Sensor, OneNoiseDoesNotShiftAnother) {
-  const auto plant = moving_plant();
-  Sensor only_speed{{.speed_noise = 0.2}, 5};
-  Sensor both{{.position_noise = 0.1, .speed_noise = 0.2}, 5};
-  for (int i = 0; i < 5; ++i) EXPECT_EQ(only_speed.sample(0, *plant).speed, both.sample(0, *plant).speed);
-}
-
-TEST(Sensor, RoundsToItsQuanta) {
+TEST(Sensor, RoundsToItsQuantaAndTellsNoNegativeSpeed) {
   const auto plant = moving_plant();
   const SensorOptions options{.position_quantum = 0.25, .heading_quantum = 0.125, .speed_quantum = 0.5};
   const model::Measurement seen = Sensor{options, 1}.sample(0.0, *plant);
@@ -73,12 +58,9 @@ TEST(Sensor, RoundsToItsQuanta) {
   EXPECT_NEAR(seen.x, plant->state().x, 0.125);
   EXPECT_EQ(std::fmod(seen.psi, 0.125), 0.0);
   EXPECT_EQ(std::fmod(seen.speed, 0.5), 0.0);
-}
-
-TEST(Sensor, SpeedIsNeverNegative) {
-  const auto plant = make_plant("road-car").value();
-  Sensor sensor{{.speed_noise = 1.0}, 3};
-  for (int i = 0; i < 100; ++i) EXPECT_GE(sensor.sample(0.0, *plant).speed, 0.0);
+  const auto standing = make_plant("road-car").value();
+  Sensor noisy{{.speed_noise = 1.0}, 3};
+  for (int i = 0; i < 100; ++i) EXPECT_GE(noisy.sample(0.0, *standing).speed, 0.0);
 }
 
 TEST(Sensor, TellsWhatWasThereALatencyAgoAsIfItWereNew) {
@@ -118,51 +100,31 @@ TEST(Sensor, TheLongestLatencyIsHeldAlsoWhereItIsSampledOften) {
   EXPECT_NE(first.x, seen.x);
 }
 
-model::Command command(double throttle) { return {.steer = -throttle, .throttle = throttle}; }
-
-TEST(ActuationDelay, HoldsTheFirstCommandUntilTheNextIsDue) {
+struct Sent {
+  double due, throttle;
+};
+/// What a delay tells at times [s], one after the other, of commands that were sent.
+std::vector<double> throttles_at(const std::vector<double>& times, const std::vector<Sent>& commands,
+                                 double first = 0.0) {
   ActuationDelay delay;
-  delay.reset(command(0.1));
-  delay.push(0.25, command(0.2));
-  EXPECT_EQ(delay.at(0.0).throttle, 0.1);
-  EXPECT_EQ(delay.at(0.2499).throttle, 0.1);
-  EXPECT_EQ(delay.at(0.25).throttle, 0.2);
-  EXPECT_EQ(delay.at(9.0).throttle, 0.2);
+  delay.reset({.steer = -first, .throttle = first});
+  for (const Sent& each : commands)
+    delay.push(each.due, {.steer = -each.throttle, .throttle = each.throttle});
+  std::vector<double> told;
+  for (const double time : times) told.push_back(delay.at(time).throttle);
+  return told;
 }
 
-TEST(ActuationDelay, TakesSumsOfStepsAsDueInSpiteOfRounding) {
-  ActuationDelay delay;
-  delay.reset(command(0.0));
-  delay.push(0.1 + 0.2, command(1.0));  // 0.30000000000000004
-  EXPECT_EQ(delay.at(0.3).throttle, 1.0);
-}
-
-TEST(ActuationDelay, ShowsOnlyTheNewestOfThoseDue) {
-  ActuationDelay delay;
-  delay.reset(command(0.0));
-  delay.push(0.10, command(0.1));
-  delay.push(0.11, command(0.2));
-  delay.push(0.30, command(0.3));
-  EXPECT_EQ(delay.at(0.2).throttle, 0.2);
-  EXPECT_EQ(delay.at(0.3).throttle, 0.3);
-}
-
-TEST(ActuationDelay, KeepsTheOrderOfSendingWhenTimesDecrease) {
-  ActuationDelay delay;
-  delay.reset(command(0.0));
-  delay.push(0.3, command(0.1));
-  delay.push(0.2, command(0.2));  // a faster answer cannot overtake
-  EXPECT_EQ(delay.at(0.25).throttle, 0.0);
-  EXPECT_EQ(delay.at(0.3).throttle, 0.2);
-}
-
-TEST(ActuationDelay, DropsTheOldestWaitingWhenFull) {
-  ActuationDelay delay;
-  delay.reset(command(0.0));
-  for (int i = 1; i <= 200; ++i) delay.push(i, command(i / 1000.0));
-  EXPECT_EQ(delay.at(72.0).throttle, 0.0);  // 1 … 72 were dropped
-  EXPECT_EQ(delay.at(73.0).throttle, 0.073);
-  EXPECT_EQ(delay.at(200.0).throttle, 0.2);
+TEST(ActuationDelay, ShowsTheNewestOfTheCommandsDueInTheOrderOfSending) {
+  EXPECT_THAT(throttles_at({0.0, 0.2499, 0.25, 9.0}, {{0.25, 0.2}}, 0.1), ElementsAre(0.1, 0.1, 0.2, 0.2));
+  EXPECT_THAT(throttles_at({0.3}, {{0.1 + 0.2, 1.0}}), ElementsAre(1.0))
+      << "0.30000000000000004: a sum of steps";
+  EXPECT_THAT(throttles_at({0.2, 0.3}, {{0.10, 0.1}, {0.11, 0.2}, {0.30, 0.3}}), ElementsAre(0.2, 0.3));
+  EXPECT_THAT(throttles_at({0.25, 0.3}, {{0.3, 0.1}, {0.2, 0.2}}), ElementsAre(0.0, 0.2))
+      << "a faster answer cannot overtake";
+  std::vector<Sent> many;
+  for (int i = 1; i <= 200; ++i) many.push_back({static_cast<double>(i), i / 1000.0});
+  EXPECT_THAT(throttles_at({72.0, 73.0, 200.0}, many), ElementsAre(0.0, 0.073, 0.2)) << "1 … 72 were dropped";
 }
 
 TEST(RandomDelay, IsEvenlyDistributedAndDependsOnSeedAndTimeOnly) {

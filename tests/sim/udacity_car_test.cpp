@@ -78,20 +78,15 @@ TEST(UdacityCar, TurnsOnTheRadiusMeasuredAtFullLock) {
   EXPECT_NEAR(circle.path_radius, 6.8, 0.1);
 }
 
-TEST(UdacityCar, CurvaturePerSteeringAngleIsInTheBandOfTheLogs) {
+TEST(UdacityCar, TurnsAndYawsInTheBandOfTheLogsAndWithTheGainsOfTheFit) {
   UdacityCar car;
   for (const double v : {6.0, 20.0, 30.0}) {
     const double ratio = experiment::steady_circle(car, 0.02, v).curvature / 0.02;
     EXPECT_GE(ratio, 1.0 / 2.90) << v;
     EXPECT_LE(ratio, 1.0 / 2.72) << v;
   }
-}
-
-TEST(UdacityCar, YawsWithTheGainsOfTheFit) {
-  UdacityCar car;
-  EXPECT_NEAR(experiment::steady_circle(car, 0.01, 20.0).yaw_rate / 0.01, 7.1, 0.1);
-  EXPECT_NEAR(experiment::steady_circle(car, 0.01, 30.0).yaw_rate / 0.01, 10.9, 0.3);
-  EXPECT_NEAR(experiment::steady_circle(car, 0.01, 45.0).yaw_rate / 0.01, 17.0, 1.1);
+  for (const auto& [v, gain, tolerance] : {std::tuple{20.0, 7.1, 0.1}, {30.0, 10.9, 0.3}, {45.0, 17.0, 1.1}})
+    EXPECT_NEAR(experiment::steady_circle(car, 0.01, v).yaw_rate / 0.01, gain, tolerance) << v;
 }
 
 TEST(UdacityCar, YawModesSlowDownWithSpeedAsIdentifiedFromTheOriginal) {
@@ -135,18 +130,6 @@ TEST(UdacityCar, ReversesBelowFiveMilesPerHour) {
   EXPECT_LT(car.state().vx, -3.0);
   EXPECT_GT(run.back().speed, 3.0);  // telemetry's speed has no sign
   EXPECT_EQ(car.output().throttle, 0.0);
-}
-
-TEST(UdacityCar, KeepsABrakeHeldDownToFiveMilesPerHour) {
-  // The original clears the brake only above 5 mph or with a negative throttle.
-  UdacityCar car;
-  car.reset({}, 10.0);
-  while (car.output().speed > 2.2) car.advance({.steer = 0.0, .throttle = -1.0});
-  experiment::drive_straight(car, 1.0, 5.0);
-  EXPECT_LT(car.output().speed, 0.01);
-  experiment::drive_straight(car, -0.1, 0.04);  // one touch of reverse frees it
-  experiment::drive_straight(car, 1.0, 3.0);
-  EXPECT_GT(car.output().speed, 5.0);
 }
 
 TEST(UdacityCar, SkipsTheHelperWhereTheOriginalYawWraps) {
