@@ -52,15 +52,12 @@ TEST_F(AccountTest, WaitsForACarThatComesBack) {
   EXPECT_LT(std::fabs(world_.state().lateral_error), 148.0);
 }
 
-TEST_F(AccountTest, ARunUntilStoppedGoesOnWhateverHappens) {
-  Account account({.laps = 0});
+TEST_F(AccountTest, EndsAtTheTimeLimitUnlessItGoesOnUntilStopped) {
+  Account stopped({.laps = 0});
   stand(80.0, 0.0, 0.0);
-  drive(account, 700.0, 0.0);
-  EXPECT_FALSE(account.is_over()) << "neither lost nor out of time";
-  EXPECT_EQ(account.summary().end_reason, "stopped");
-}
-
-TEST_F(AccountTest, EndsAtTheTimeLimit) {
+  drive(stopped, 700.0, 0.0);
+  EXPECT_FALSE(stopped.is_over()) << "neither lost nor out of time";
+  EXPECT_EQ(stopped.summary().end_reason, "stopped");
   Account given({.laps = 0, .time_limit = 2.0});
   stand(0.0, kPi / 2.0, 0.0);
   EXPECT_NEAR(drive(given, 100.0, 0.0), 2.0, 0.05);
@@ -104,14 +101,10 @@ TEST_F(AccountTest, TellsEachLapOnceAndNumbersThemOverAllCars) {
   account.restart();
   EXPECT_EQ(account.completed_lap().lap, 0);
   EXPECT_EQ(account.laps_completed(), 0);
-}
-
-TEST_F(AccountTest, RemembersAThousandLapsOfARunUntilStopped) {
-  Account account({.laps = 0});
-  sim::WorldState seen;
-  for (seen.lap = 1; seen.lap <= 1200; ++seen.lap) account.add_sighting(seen);
-  EXPECT_EQ(account.summary().laps_completed, 1200);
-  EXPECT_EQ(account.summary().laps.size(), 1000U);
+  Account endless({.laps = 0});
+  for (seen.lap = 1; seen.lap <= 1200; ++seen.lap) endless.add_sighting(seen);
+  EXPECT_EQ(endless.summary().laps_completed, 1200);
+  EXPECT_EQ(endless.summary().laps.size(), 1000U);
 }
 
 constexpr double kRadius = 60.0;
@@ -125,10 +118,10 @@ road::Track circle() {
   return test::circle_road(kRadius, 120, 5.0, 4.0, {.spacing = 2.0, .smoothing_sigma = 0.0});
 }
 
-/// Somebody else's car that goes round, as telemetry tells of it.
+/// Somebody else's car that goes round, as telemetry tells of it; judged by a road, or by none.
 class Telemetry {
  public:
-  explicit Telemetry(Roadside& roadside) : roadside_{roadside} {}
+  explicit Telemetry(bool has_road = true) : roadside(has_road ? &track_ : nullptr, {}) {}
   const telemetry::Frame& next(double left = 0.0) {
     const double angle = kSpeed / kRadius * driven_for_;
     frame_->time = 100.0 + driven_for_;
@@ -137,29 +130,42 @@ class Telemetry {
     frame_->measurement.y = (kRadius - left) * std::sin(angle);
     frame_->measurement.psi = angle + kPi / 2.0;
     frame_->measurement.speed = kSpeed;
-    roadside_.judge(*frame_);
+    roadside.judge(*frame_);
     driven_for_ += kPeriod;
     return *frame_;
   }
+  void drive(double laps) {
+    while (driven_for_ < laps * kLapTime) next();
+  }
   const telemetry::Frame& broken() {
     frame_->has_measurement = false;
-    roadside_.judge(*frame_);
+    roadside.judge(*frame_);
     return *frame_;
   }
   [[nodiscard]] double driven_for() const { return driven_for_; }
+  /// Another car begins at the line.
+  void begin_anew() {
+    roadside.resume();
+    driven_for_ = 0.0;
+  }
 
  private:
-  Roadside& roadside_;
+  road::Track track_ = circle();
   double driven_for_ = 0.0;
   std::unique_ptr<telemetry::Frame> frame_ = std::make_unique<telemetry::Frame>();
+
+ public:
+  Roadside roadside;
 };
 
-TEST(Roadside, TimesLapsOfACarThatOthersSimulate) {
-  const road::Track track = circle();
-  Roadside roadside(&track, {});
-  Telemetry car(roadside);
+TEST(Roadside, TimesLapsOfACarThatOthersSimulateOverTelemetryThatWasBroken) {
+  Telemetry car;
   EXPECT_TRUE(car.next().is_judged);
-  while (car.driven_for() < 2.5 * kLapTime) car.next();
+  car.drive(1.1);
+  const telemetry::Frame& broken = car.broken();
+  EXPECT_FALSE(broken.is_judged);
+  EXPECT_EQ(broken.completed_lap.lap, 1);
+  car.drive(2.5);
   const telemetry::Frame& frame = car.next(1.5);
   EXPECT_EQ(frame.lap, 2);
   EXPECT_NEAR(frame.lateral_error, 1.5, 1e-3);
@@ -171,7 +177,7 @@ TEST(Roadside, TimesLapsOfACarThatOthersSimulate) {
   for (const double sector : frame.completed_lap.sector_times) EXPECT_NEAR(sector, kLapTime / 3.0, 2e-3);
   EXPECT_NEAR(frame.completed_lap.mean_speed, kSpeed, 1e-9);
 
-  const telemetry::RunSummary run = roadside.summary();
+  const telemetry::RunSummary run = car.roadside.summary();
   EXPECT_EQ(run.track, "circle");
   ASSERT_EQ(run.laps.size(), 2U);
   EXPECT_EQ(run.laps[1].lap_time, frame.completed_lap.lap_time);
@@ -181,11 +187,9 @@ TEST(Roadside, TimesLapsOfACarThatOthersSimulate) {
 }
 
 TEST(Roadside, SeesWheelsBeyondTheEdge) {
-  const road::Track track = circle();
-  Roadside roadside(&track, {});
-  Telemetry car(roadside);
+  Telemetry car;
   while (car.driven_for() < 1.2 * kLapTime) car.next(car.driven_for() < 0.5 * kLapTime ? 4.8 : 0.0);
-  const telemetry::RunSummary run = roadside.summary();
+  const telemetry::RunSummary run = car.roadside.summary();
   ASSERT_EQ(run.laps.size(), 1U);
   EXPECT_LT(run.laps[0].min_edge_distance, 0.0);
   EXPECT_EQ(run.off_track_events, 1);
@@ -194,15 +198,14 @@ TEST(Roadside, SeesWheelsBeyondTheEdge) {
 }
 
 TEST(Roadside, TimesLapsAndJudgesNothingOnARoadThatNobodyKnows) {
-  Roadside roadside(nullptr, {});
-  Telemetry car(roadside);
+  Telemetry car(false);
   int cycles = 1;
   for (; car.driven_for() < 2.2 * kLapTime; ++cycles) EXPECT_FALSE(car.next().is_judged);
   EXPECT_EQ(car.next().lap, 2);
-  const auto lap = test::good(roadside.take_lap());
+  const auto lap = test::good(car.roadside.take_lap());
   EXPECT_NEAR(lap->lap_time, kLapTime, 1e-3 * kLapTime);
   EXPECT_FALSE(std::isfinite(lap->min_edge_distance));
-  const telemetry::RunSummary run = roadside.summary();
+  const telemetry::RunSummary run = car.roadside.summary();
   EXPECT_EQ(run.track, "");
   EXPECT_EQ(static_cast<int>(run.cycles), cycles);
   ASSERT_EQ(run.laps.size(), 2U);
@@ -213,41 +216,29 @@ TEST(Roadside, TimesLapsAndJudgesNothingOnARoadThatNobodyKnows) {
 }
 
 TEST(Roadside, ForgetsWhatWasJudgedByAnotherRoad) {
-  const road::Track track = circle();
-  Roadside roadside(&track, {});
-  Telemetry car(roadside);
+  Telemetry car;
   EXPECT_TRUE(car.next(20.0).is_off_track);
-  roadside.forget_track();
+  car.roadside.forget_track();
   EXPECT_FALSE(car.next().is_judged);
-  while (car.driven_for() < 1.2 * kLapTime) car.next();
-  const telemetry::RunSummary run = roadside.summary();
+  car.drive(1.2);
+  const telemetry::RunSummary run = car.roadside.summary();
   EXPECT_EQ(run.track, "");
   EXPECT_EQ(run.off_track_events, 0);
   EXPECT_EQ(run.laps_completed, 1);
 }
 
-TEST(Roadside, KeepsTheLapsOverTelemetryThatWasBroken) {
-  const road::Track track = circle();
-  Roadside roadside(&track, {});
-  Telemetry car(roadside);
-  while (car.driven_for() < 1.1 * kLapTime) car.next();
-  const telemetry::Frame& broken = car.broken();
-  EXPECT_FALSE(broken.is_judged);
-  EXPECT_EQ(broken.completed_lap.lap, 1);
-}
-
 TEST(Roadside, GoesOnCountingWithTheNextCar) {
-  const road::Track track = circle();
-  Roadside roadside(&track, {});
-  Telemetry first(roadside);
-  while (first.driven_for() < 1.7 * kLapTime) first.next();
-  roadside.resume();
-  Telemetry second(roadside);
-  EXPECT_EQ(second.next(6.0).lap, 1) << "the lap that was under way does not count";
+  Telemetry car;
+  Roadside& roadside = car.roadside;
+  car.drive(1.7);
+  car.begin_anew();
+  EXPECT_EQ(car.next(6.0).lap, 1) << "the lap that was under way does not count";
   EXPECT_TRUE(roadside.take_lap());
   EXPECT_FALSE(roadside.take_lap()) << "each lap is told once";
-  while (second.driven_for() < 1.1 * kLapTime) second.next();
-  EXPECT_EQ(second.next().lap, 2);
+  const test::AllocationGuard guard;
+  car.drive(1.1);
+  EXPECT_EQ(car.next().lap, 2);
+  EXPECT_EQ(guard.count(), 0) << "nothing is allocated while it looks";
   EXPECT_EQ(roadside.take_lap()->lap, 2);
   const telemetry::RunSummary run = roadside.summary();
   ASSERT_EQ(run.laps.size(), 2U);
@@ -256,22 +247,13 @@ TEST(Roadside, GoesOnCountingWithTheNextCar) {
   EXPECT_EQ(run.end_reason, "stopped");
 }
 
-TEST(Roadside, AllocatesNothingWhileItLooks) {
-  const road::Track track = circle();
-  Roadside roadside(&track, {});
-  Telemetry car(roadside);
-  car.next();
-  const test::AllocationGuard guard;
-  while (car.driven_for() < 1.5 * kLapTime) car.next();
-  EXPECT_EQ(guard.count(), 0);
-}
-
 /// A car that goes round a circle, `left` metres beside its line; `way` < 0: the other way round.
 struct Car {
   double angle = 0.3;
   double time = 100.0;
-  void drive(LapLearner& learner, double duration, double left = 0.0, double way = 1.0) {
-    for (double end = time + duration; time < end; time += kPeriod) {
+  LapLearner learner;
+  void drive(double laps, double left = 0.0, double way = 1.0) {
+    for (double end = time + laps * kLapTime; time < end; time += kPeriod) {
       const double radius = kRadius - left;
       learner.see(
           time,
@@ -280,65 +262,52 @@ struct Car {
       angle += way * kSpeed / kRadius * kPeriod;
     }
   }
+  const sim::WorldState& state() { return learner.state(); }
 };
 
 TEST(LapLearner, TimesLapsFromWhereTheCarWasFirstSeen) {
-  LapLearner learner;
   Car car;
-  car.drive(learner, 0.9 * kLapTime);
-  EXPECT_EQ(learner.state().lap, 0);
-  car.drive(learner, 0.2 * kLapTime);
-  EXPECT_EQ(learner.state().lap, 1);
+  car.drive(0.9);
+  EXPECT_EQ(car.state().lap, 0);
+  car.drive(0.2);
+  EXPECT_EQ(car.state().lap, 1);
   // Between two sightings the car goes straight: 0.12 s on 60 m are 1e-4 of a lap.
-  EXPECT_NEAR(learner.state().last_lap_time, kLapTime, 1e-3 * kLapTime);
-  EXPECT_NEAR(learner.state().lap_time, 0.1 * kLapTime, 2.0 * kPeriod);
-  car.drive(learner, kLapTime, 3.0);
-  EXPECT_EQ(learner.state().lap, 2);
-  EXPECT_NEAR(learner.state().best_lap_time, kLapTime, 1e-3 * kLapTime);
-  EXPECT_TRUE(std::isnan(learner.state().last_sector_times[0])) << "of a road that nobody knows";
+  EXPECT_NEAR(car.state().last_lap_time, kLapTime, 1e-3 * kLapTime);
+  EXPECT_NEAR(car.state().lap_time, 0.1 * kLapTime, 2.0 * kPeriod);
+  car.drive(1.0, 3.0);
+  EXPECT_EQ(car.state().lap, 2);
+  EXPECT_NEAR(car.state().best_lap_time, kLapTime, 1e-3 * kLapTime);
+  EXPECT_TRUE(std::isnan(car.state().last_sector_times[0])) << "of a road that nobody knows";
 }
 
-TEST(LapLearner, ACarThatGoesBackAndForthOverTheLineDrivesNoLap) {
-  LapLearner learner;
-  Car car;
+TEST(LapLearner, CountsNoLapOfACarThatGoesBackAndForthTakesAShortCutIsMovedOrForgotten) {
+  Car back_and_forth;
   for (int i = 0; i < 10; ++i) {
-    car.drive(learner, 0.1 * kLapTime);
-    car.drive(learner, 0.2 * kLapTime, 0.0, -1.0);
-    car.drive(learner, 0.1 * kLapTime);
+    back_and_forth.drive(0.1);
+    back_and_forth.drive(0.2, 0.0, -1.0);
+    back_and_forth.drive(0.1);
   }
-  EXPECT_EQ(learner.state().lap, 0);
-}
-
-TEST(LapLearner, AShortCutIsNoLapOnceALapIsKnown) {
-  LapLearner learner;
-  Car car;
-  car.drive(learner, 1.05 * kLapTime);
-  ASSERT_EQ(learner.state().lap, 1);
-  for (double left = 0.0; left < 14.0; left += 1.0) car.drive(learner, kPeriod, left);
-  car.drive(learner, 1.0 * kLapTime, 14.0);  // a smaller circle, 77 % of the lap
-  EXPECT_EQ(learner.state().lap, 1);
-  EXPECT_LT(learner.state().lap_time, 0.2 * kLapTime) << "the next one has begun";
-}
-
-TEST(LapLearner, ACarThatWasMovedBeginsAnew) {
-  LapLearner learner;
-  Car car;
-  car.drive(learner, 0.5 * kLapTime);
-  car.angle += kPi;
-  car.drive(learner, 0.6 * kLapTime);
-  EXPECT_EQ(learner.state().lap, 0);
-  car.drive(learner, 0.5 * kLapTime);
-  EXPECT_EQ(learner.state().lap, 1);
-}
-
-TEST(LapLearner, ForgetsWhenReset) {
-  LapLearner learner;
-  Car car;
-  car.drive(learner, 0.7 * kLapTime);
-  learner.reset();
-  car.drive(learner, 0.7 * kLapTime);
-  EXPECT_EQ(learner.state().lap, 0);
-  EXPECT_NEAR(learner.state().lap_time, 0.7 * kLapTime, 2.0 * kPeriod);
+  EXPECT_EQ(back_and_forth.state().lap, 0);
+  Car shortened;
+  shortened.drive(1.05);
+  ASSERT_EQ(shortened.state().lap, 1);
+  for (double left = 0.0; left < 14.0; left += 1.0) shortened.drive(kPeriod / kLapTime, left);
+  shortened.drive(1.0, 14.0);  // a smaller circle, 77 % of the lap
+  EXPECT_EQ(shortened.state().lap, 1);
+  EXPECT_LT(shortened.state().lap_time, 0.2 * kLapTime) << "the next one has begun";
+  Car moved;
+  moved.drive(0.5);
+  moved.angle += kPi;
+  moved.drive(0.6);
+  EXPECT_EQ(moved.state().lap, 0);
+  moved.drive(0.5);
+  EXPECT_EQ(moved.state().lap, 1);
+  Car forgotten;
+  forgotten.drive(0.7);
+  forgotten.learner.reset();
+  forgotten.drive(0.7);
+  EXPECT_EQ(forgotten.state().lap, 0);
+  EXPECT_NEAR(forgotten.state().lap_time, 0.7 * kLapTime, 2.0 * kPeriod);
 }
 
 // A figure of eight that is begun at its crossing: half a lap later another road leads over the start line.
