@@ -55,52 +55,47 @@ TEST(LiveSettings, HandOverEachKindOfValueAsTheTextThatSetTakes) {
 
 TEST(LiveSettings, RefuseWhatSetWouldRefuseInOneSentence) {
   Live live;
-  EXPECT_EQ(live.refusal({"latency_ms", 900.0}), "latency_ms: got 900, expected a number in [0, 500] ms");
-  EXPECT_EQ(live.refusal({"tracking_mpc.horizon_steps", 7.5}),
-            "tracking_mpc.horizon_steps: got 7.5, expected an integer in [5, 100]");
+  const std::string latency = ", expected a number in [0, 500] ms", share = ", expected a number in [-1, 1]";
+  for (const auto& [parameter, sentence] : std::vector<std::pair<Parameter, std::string>>{
+           {{"latency_ms", 900.0}, "latency_ms: got 900" + latency},
+           {{"latency_ms", {}}, "latency_ms: got nothing" + latency},
+           {{"latency_ms", std::vector<double>{1.0}}, "latency_ms: got a list" + latency},
+           {{"tracking_mpc.horizon_steps", 7.5},
+            "tracking_mpc.horizon_steps: got 7.5, expected an integer in [5, 100]"},
+           {{"tracking_mpc.compensate_delay", 1.0},
+            "tracking_mpc.compensate_delay: got 1, expected true or false"},
+           {{"run.pace", 21.0}, "run.pace: got 21, expected a number in [0.05, 20]"},
+           {{"manual.steer", std::numeric_limits<double>::quiet_NaN()}, "manual.steer: got nan" + share},
+           {{"manual.steer", std::string("0.5")}, "manual.steer: got 0.5" + share},
+           {{"manual.is_on", 1.0}, "manual.is_on: got 1, expected true or false"},
+           {{"guard.mode", std::string("no")}, "guard.mode: got no, expected one of on, observe, off"},
+           {{"track", std::string(300, 'x')}, "track: got 300 bytes, expected at most 256"}})
+    EXPECT_EQ(live.refusal(parameter), sentence);
   EXPECT_THAT(live.refusal({"tracking_mpc.horizon_step", 20.0}),
               HasSubstr("did you mean tracking_mpc.horizon_steps?"));
   EXPECT_THAT(live.refusal({"manual.ste", 0.0}), HasSubstr("did you mean manual.steer?"));
-  EXPECT_EQ(live.refusal({"tracking_mpc.compensate_delay", 1.0}),
-            "tracking_mpc.compensate_delay: got 1, expected true or false");
   EXPECT_THAT(live.refusal({"cubic_mpc.latency_handling", std::string("magic")}),
               HasSubstr("expected one of"));
-  EXPECT_EQ(live.refusal({"latency_ms", {}}), "latency_ms: got nothing, expected a number in [0, 500] ms");
-  EXPECT_EQ(live.refusal({"latency_ms", std::vector<double>{1.0}}),
-            "latency_ms: got a list, expected a number in [0, 500] ms");
-  EXPECT_EQ(live.refusal({"run.pace", 21.0}), "run.pace: got 21, expected a number in [0.05, 20]");
-  EXPECT_EQ(live.refusal({"manual.steer", std::numeric_limits<double>::quiet_NaN()}),
-            "manual.steer: got nan, expected a number in [-1, 1]");
-  EXPECT_EQ(live.refusal({"manual.is_on", 1.0}), "manual.is_on: got 1, expected true or false");
-  EXPECT_EQ(live.refusal({"manual.steer", std::string("0.5")}),
-            "manual.steer: got 0.5, expected a number in [-1, 1]");
-  EXPECT_EQ(live.refusal({"track", std::string(300, 'x')}), "track: got 300 bytes, expected at most 256");
   EXPECT_EQ(live.value("latency_ms"), ParameterValue(100.0));
+  Live other(scenario_of({{"preset", "delay-in-model"}}));
+  EXPECT_THAT(other.refusal({"cubic_mpc.latency_ms", 50.0}), HasSubstr("expected cubic_mpc.step_length_s"))
+      << "settings that exclude each other";
 }
 
-TEST(LiveSettings, RefuseSettingsThatExcludeEachOther) {
-  Live live(scenario_of({{"preset", "delay-in-model"}}));
-  EXPECT_THAT(live.refusal({"cubic_mpc.latency_ms", 50.0}), HasSubstr("expected cubic_mpc.step_length_s"));
-}
-
-TEST(LiveSettings, SayWhenTooManyChangesWait) {
+TEST(LiveSettings, SendWhatChangesAndEveryWordOfAPersonUntilTooMuchWaits) {
   Live live;
+  ASSERT_TRUE(live.settings.set({"latency_ms", 100.0}));
+  EXPECT_EQ(live.requests.front(), nullptr) << "it holds already";
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_TRUE(live.settings.set({"manual.throttle", 0.5}));
+    EXPECT_EQ(live.next().value.view(), "0.5");
+  }
   for (std::uint64_t i = 0; i < run::SettingQueue::kCapacity; ++i)
     ASSERT_TRUE(live.settings.set({"manual.steer", 0.001 * static_cast<double>(i)}));
   EXPECT_EQ(test::refusal_of(live.settings.set({"latency_ms", 10.0})),
             "latency_ms: too many changes wait; try again");
   EXPECT_FALSE(live.settings.set({"track", std::string("oval")}));
   EXPECT_TRUE(live.started.empty());
-}
-
-TEST(LiveSettings, SendNothingForAValueThatHoldsAlreadyButEveryWordOfAPerson) {
-  Live live;
-  ASSERT_TRUE(live.settings.set({"latency_ms", 100.0}));
-  EXPECT_EQ(live.requests.front(), nullptr);
-  for (int i = 0; i < 2; ++i) {
-    ASSERT_TRUE(live.settings.set({"manual.throttle", 0.5}));
-    EXPECT_EQ(live.next().value.view(), "0.5");
-  }
 }
 
 TEST(LiveSettings, StartAnewWithAnotherTrackAndKeepWhatWasSet) {
@@ -319,25 +314,29 @@ TEST(LiveSettings, DescribeThemselvesInJson) {
     }
     return nlohmann::json();
   };
-  const auto horizon = entry("cubic_mpc.horizon_steps");
-  EXPECT_EQ(horizon["kind"], "integer");
-  EXPECT_EQ(horizon["group"], "cubic_mpc");
-  EXPECT_EQ(horizon["minimum"], 2);
-  EXPECT_EQ(horizon["maximum"], 200);
-  EXPECT_EQ(horizon["default"], 7);  // the preset's, not what is set now
-  EXPECT_EQ(horizon["start"], 9);    // the command line's
-  EXPECT_EQ(horizon["is_live"], true);
-  EXPECT_EQ(horizon["is_fixed"], false);
-  EXPECT_EQ(entry("vehicle.friction")["is_fixed"], true);
-  EXPECT_EQ(entry("guard.mode")["is_fixed"], true);
-  EXPECT_EQ(entry("latency_ms")["unit"], "ms");
-  EXPECT_EQ(entry("latency_ms")["group"], "run");
-  EXPECT_EQ(entry("track")["is_live"], false);
+  const auto expect = [&](const std::string& key, const nlohmann::json& values) {
+    for (const auto& [name, value] : values.items()) EXPECT_EQ(entry(key)[name], value) << key << ' ' << name;
+  };
+  // By default the preset's, not what is set now; it started with the command line's.
+  expect("cubic_mpc.horizon_steps", {{"kind", "integer"},
+                                     {"group", "cubic_mpc"},
+                                     {"minimum", 2},
+                                     {"maximum", 200},
+                                     {"default", 7},
+                                     {"start", 9},
+                                     {"is_live", true},
+                                     {"is_fixed", false}});
+  for (const char* key : {"vehicle.friction", "guard.mode"}) expect(key, {{"is_fixed", true}});
+  expect("latency_ms", {{"unit", "ms"}, {"group", "run"}});
+  expect("track", {{"is_live", false}});
   EXPECT_THAT(entry("track")["choices"].dump(), HasSubstr("lakeside"));
-  EXPECT_EQ(entry("cubic_mpc.latency_handling")["kind"], "choice");
-  EXPECT_EQ(entry("vehicle.drive_power_per_mass_wpkg")["default"], "inf");
-  EXPECT_EQ(entry("manual.is_on")["kind"], "bool");
-  EXPECT_EQ(entry("run.pace")["maximum"], 20);
+  expect("cubic_mpc.latency_handling", {{"kind", "choice"}});
+  expect("vehicle.drive_power_per_mass_wpkg", {{"default", "inf"}, {"may_be_infinite", true}});
+  expect("manual.is_on", {{"kind", "bool"}});
+  expect("manual.steer", {{"minimum", -1.0}, {"maximum", 1.0}});
+  expect("run.pace", {{"maximum", 20}});
+  for (const auto& each : schema) EXPECT_FALSE(each["meaning"].get<std::string>().empty()) << each["key"];
+  EXPECT_EQ(schema[0]["key"], protocol::list().front().key) << "the controls stand behind";
 }
 
 TEST(LiveSettings, BecomeAPresetFileThatGivesThemBackForEveryRow) {
@@ -359,30 +358,21 @@ TEST(LiveSettings, BecomeAPresetFileThatGivesThemBackForEveryRow) {
 }
 
 TEST(FixedSettings, KeepTheGuardAndItsModelOutOfReach) {
-  EXPECT_EQ(Live().refusal({"guard.mode", std::string("off")}),
-            "guard.mode is fixed when the run starts; set it on the command line: --set guard.mode=off");
-  EXPECT_EQ(Live().refusal({"vehicle.friction", 2.5}),
-            "vehicle.friction is fixed when the run starts; set it on the command line: --set "
-            "vehicle.friction=2.5");
-  EXPECT_EQ(Live().refusal({"guard.mode", std::string("no")}),
-            "guard.mode: got no, expected one of on, observe, off");
+  const std::string fixed = " is fixed when the run starts; set it on the command line: --set ";
+  EXPECT_EQ(Live().refusal({"guard.mode", std::string("off")}), "guard.mode" + fixed + "guard.mode=off");
+  EXPECT_EQ(Live().refusal({"vehicle.friction", 2.5}), "vehicle.friction" + fixed + "vehicle.friction=2.5");
   const scenario::Scenario plain = scenario_of({});
   for (const protocol::Parameter& row : protocol::list()) {
     if (row.group != "guard" && row.group != "vehicle") continue;
     Live live;
     const ParameterValue before = live.value(row.key);
-    EXPECT_THAT(live.refusal({std::string(row.key), another_value(row, plain)}),
-                HasSubstr(" is fixed when the run starts; set it on the command line: --set "));
+    EXPECT_THAT(live.refusal({std::string(row.key), another_value(row, plain)}), HasSubstr(fixed));
     EXPECT_EQ(live.value(row.key), before) << row.key;
     EXPECT_TRUE(live.started.empty()) << row.key;
     EXPECT_TRUE(live.settings.set({std::string(row.key), before})) << "the value that holds";
   }
-}
-
-TEST(FixedSettings, LeaveTheSimulatedWorldToViewers) {
-  Live live;
-  EXPECT_TRUE(live.settings.set({"plant_options.friction_scale", 0.8}));
-  EXPECT_TRUE(live.settings.set({"plant_options.mass_scale", 1.1}));
+  for (const char* world : {"plant_options.friction_scale", "plant_options.mass_scale"})
+    EXPECT_TRUE(Live().settings.set({world, 0.8})) << "the simulated world is left to viewers";
 }
 
 TEST(FixedSettings, KeepTheGuardAndTheModelOfTheCommandLineWhateverPresetOrCarIsChosen) {

@@ -8,26 +8,21 @@
 namespace chicane::live {
 namespace {
 
-TEST(Pages, OfALiveRunSaySo) {
+TEST(Pages, OfALiveRunSaySoAndOfAReplayNameItsLogsAndServeNoOtherFile) {
   wire::Router router(nullptr, nullptr);
-  const net::ServerHandlers handlers = router.handlers(live_pages());
-  const auto mode = test::good(handlers.on_get("/mode.json"));
+  const net::ServerHandlers live = router.handlers(live_pages());
+  const auto mode = test::good(live.on_get("/mode.json"));
   EXPECT_EQ(mode->content_type, "application/json");
   EXPECT_EQ(mode->bytes, "{\"mode\":\"live\"}\n");
-  EXPECT_FALSE(handlers.on_get("/log/0.mcap"));
-}
-
-TEST(Pages, OfAReplayNameItsLogsAndServeNoOtherFile) {
-  wire::Router router(nullptr, nullptr);
-  const auto handlers = router.handlers(
+  EXPECT_FALSE(live.on_get("/log/0.mcap"));
+  const auto replay = router.handlers(
       replay_pages({{"run \"1\".mcap", "/tmp/run.mcap"}, {"branch at 12.0 s", "/tmp/b"}}, 12.0));
-  EXPECT_EQ(handlers.on_get("/mode.json")->bytes,
+  EXPECT_EQ(replay.on_get("/mode.json")->bytes,
             "{\"mode\":\"replay\",\"logs\":[{\"name\":\"run \\\"1\\\".mcap\",\"url\":\"/log/0.mcap\"},"
             "{\"name\":\"branch at 12.0 s\",\"url\":\"/log/1.mcap\"}],\"start_s\":12.0}\n");
-  EXPECT_EQ(handlers.on_get("/log/1.mcap")->file, "/tmp/b");
-  for (const char* path : {"/log/2.mcap", "/log/", "/log/../tmp/b", "/tmp/b", "/log/01.mcap", ""}) {
-    EXPECT_FALSE(handlers.on_get(path)) << path;
-  }
+  EXPECT_EQ(replay.on_get("/log/1.mcap")->file, "/tmp/b");
+  for (const char* path : {"/log/2.mcap", "/log/", "/log/../tmp/b", "/tmp/b", "/log/01.mcap", ""})
+    EXPECT_FALSE(replay.on_get(path)) << path;
 }
 
 TEST(Pages, OfAReplayTellTheSettingsThatAnotherFutureMayHave) {

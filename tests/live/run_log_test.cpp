@@ -71,17 +71,6 @@ TEST(RunLog, KnowsARunThatStartedAnewFromThereOnWithItsSettings) {
   EXPECT_GT(report->recorded.top_speed, 3.0) << "the fault of before is over: the car drives";
 }
 
-TEST(RunLog, KnowsTheNewestRunOnly) {
-  Driven run;
-  run.drive(30);
-  run.loop = loop_on("oval");
-  run.log.begin(run.loop->scenario());
-  run.drive(50);
-  const auto report = test::good(run.branch({.at = 1.0, .duration = 1.0, .drives_both = true}));
-  EXPECT_FALSE(report->first_difference);
-  EXPECT_EQ(report->cycle, 25U);
-}
-
 TEST(RunLog, SaysWhyARunIsNotKnown) {
   RunLog log(false, 100);
   ASSERT_FALSE(log.since({}));
@@ -114,14 +103,6 @@ TEST(RunLog, AllocatesNothingOnTheControlThread) {
   EXPECT_EQ(guard.count(), 0);
 }
 
-std::unique_ptr<run::ClosedLoop> oval() {
-  return test::loop_of(test::scenario_of({{"track", "oval"}, {"laps", "0"}, {"controller", "pid"}}));
-}
-
-void drive(run::ClosedLoop& loop, RunLog& log, int cycles) {
-  test::drive_cycles(loop, cycles, [&](const telemetry::Frame& frame) { log.note(frame); });
-}
-
 /// From now on, once a checkpoint is near enough.
 recording::BranchReport branch_from_checkpoint(RunLog& log, const recording::BranchOptions& options,
                                                std::uint64_t most_steps) {
@@ -133,32 +114,33 @@ recording::BranchReport branch_from_checkpoint(RunLog& log, const recording::Bra
   }
 }
 
-TEST(RunLog, FollowsARunThatBeginsAnew) {
-  const auto loop = oval();
-  RunLog log(true);
+TEST(RunLog, FollowsTheNewestRunAndGoesOnWhereTheStartIsForgottenAndSaysSo) {
+  const auto loop =
+      test::loop_of(test::scenario_of({{"track", "oval"}, {"laps", "0"}, {"controller", "pid"}}));
+  RunLog log(true, 1000);
+  const auto drive = [&](int cycles) {
+    test::drive_cycles(*loop, cycles, [&](const telemetry::Frame& frame) { log.note(frame); });
+  };
+  log.begin(test::scenario_of({{"track", "lakeside"}}));
+  drive(30);
+  loop->restart();
   log.begin(loop->scenario());
-  drive(*loop, log, 500);
   const recording::BranchOptions now{.at = 1e9, .duration = 1.0, .drives_both = true};
+  const auto branch = [&](std::uint64_t cycle) {
+    const auto report = test::good(log.branch(now, {}));
+    EXPECT_EQ(report->cycle, cycle);
+    EXPECT_FALSE(report->first_difference);
+  };
+  drive(500);
   EXPECT_EQ(branch_from_checkpoint(log, now, 260).cycle, 500U);
   loop->restart();
-  drive(*loop, log, 300);
-  const auto report = test::good(log.branch(now, {}));
-  EXPECT_EQ(report->cycle, 300U) << "of the run that was started anew";
-  EXPECT_FALSE(report->first_difference);
-}
-
-TEST(RunLog, GoesOnWhereTheStartIsForgottenAndSaysSoOfWhatIs) {
-  const auto loop = oval();
-  RunLog log(true, 1000);
-  log.begin(loop->scenario());
-  drive(*loop, log, 800);
-  const recording::BranchOptions now{.at = 1e9, .duration = 1.0, .drives_both = true};
+  drive(300);
+  branch(300);
+  drive(500);
   branch_from_checkpoint(log, now, 260);
-  drive(*loop, log, 400);
+  drive(400);
   EXPECT_FALSE(log.since({})) << "the start is forgotten";
-  const auto report = test::good(log.branch(now, {}));
-  EXPECT_FALSE(report->first_difference);
-  EXPECT_EQ(report->cycle, 1200U);
+  branch(1200);
   EXPECT_THAT(test::refusal_of(log.branch({.at = 1.0, .duration = 1.0, .drives_both = true}, {})),
               HasSubstr("ask for a moment after"));
 }

@@ -94,24 +94,20 @@ TEST(WhatIf, AnswersTheNewestQuestionWithBothFutures) {
   EXPECT_LT(branch["trace"]["distance_m"].back(), was["trace"]["distance_m"].back());
 }
 
-TEST(WhatIf, SaysWhyThereIsNoAnswer) {
-  WhatIf what_if([](const WhatIfQuestion&, const recording::BranchHooks&) -> Result<recording::BranchReport> {
-    return fail(ErrorCode::kInvalidArgument, "the run has not begun");
-  });
-  ASSERT_TRUE(what_if.ask("{}"));
-  const Json answer = answer_of(what_if);
-  EXPECT_EQ(answer["state"], "failed");
-  EXPECT_EQ(answer["why"], "the run has not begun");
-}
-
-TEST(WhatIf, GivesUpWhatNobodyAsksAnyMore) {
+TEST(WhatIf, SaysWhyThereIsNoAnswerAndGivesUpWhatNobodyAsksAnyMore) {
+  const auto failure = fail(ErrorCode::kInvalidArgument, "the run has not begun");
+  WhatIf failing([&](const WhatIfQuestion&,
+                     const recording::BranchHooks&) -> Result<recording::BranchReport> { return failure; });
+  ASSERT_TRUE(failing.ask("{}"));
+  EXPECT_EQ(answer_of(failing)["state"], "failed");
+  EXPECT_EQ(answer_of(failing)["why"], "the run has not begun");
   std::atomic<int> given_up{0};
   {
     WhatIf what_if(
         [&](const WhatIfQuestion&, const recording::BranchHooks& hooks) -> Result<recording::BranchReport> {
           while (hooks.go_on(1.0)) std::this_thread::yield();
           ++given_up;
-          return fail(ErrorCode::kInvalidArgument, "given up");
+          return failure;
         });
     ASSERT_TRUE(what_if.ask("{}"));
     EXPECT_EQ(Json::parse(what_if.answer())["state"], "computing");
