@@ -10,70 +10,66 @@ const model::VehicleParams kCar;
 
 protocol::UdacitySteer straight(double throttle) { return {.command = {.throttle = throttle}}; }
 
-/// A receiver that has picked up commands for `duration` [s], a cycle apart; what it was told last acts.
-double driven(CommandReceiver& receiver, double duration, double cycle = kCycle) {
-  double time = 0.0;
-  static_cast<void>(receiver.sampled(time));
-  for (; time < duration; time += cycle) {
-    receiver.answered(straight(1.0));
-    static_cast<void>(receiver.act(time + 0.9 * cycle, 10.0));
-    EXPECT_TRUE(receiver.sampled(time + cycle));
+/// A receiver that has picked up commands; what it was told last acts.
+struct Told {
+  explicit Told(safety::Receiver kind = safety::Receiver::kStopPlan) : receiver(kCar, kind) {
+    static_cast<void>(receiver.sampled(0.0));
   }
-  return time;
-}
+  /// Commands for `duration` [s], a cycle apart; when they end.
+  double drive(double duration, double cycle = kCycle) {
+    double time = 0.0;
+    for (; time < duration; time += cycle) {
+      receiver.answered(straight(1.0));
+      static_cast<void>(receiver.act(time + 0.9 * cycle, 10.0));
+      EXPECT_TRUE(receiver.sampled(time + cycle));
+    }
+    return time;
+  }
+  double throttle(double time, double speed = 10.0) { return receiver.act(time, speed).throttle; }
+  CommandReceiver receiver;
+};
 
 TEST(CommandReceiver, StandsUntilTheFirstCommandHoweverLateItComes) {
-  CommandReceiver receiver(kCar, safety::Receiver::kStopPlan);
-  static_cast<void>(receiver.sampled(0.0));
-  EXPECT_EQ(receiver.act(9.0, 0.0).throttle, 0.0);
-  receiver.answered(straight(1.0));
-  EXPECT_EQ(receiver.act(9.5, 0.0).throttle, 0.0);  // picked up with the next telemetry
-  EXPECT_TRUE(receiver.sampled(9.6));
-  EXPECT_EQ(receiver.act(9.6, 0.0).throttle, 1.0);
+  Told car;
+  EXPECT_EQ(car.throttle(9.0, 0.0), 0.0);
+  car.receiver.answered(straight(1.0));
+  EXPECT_EQ(car.throttle(9.5, 0.0), 0.0);  // picked up with the next telemetry
+  EXPECT_TRUE(car.receiver.sampled(9.6));
+  EXPECT_EQ(car.throttle(9.6, 0.0), 1.0);
 }
 
-TEST(CommandReceiver, BrakesWithTheLastSteeringWhereNoPlanCame) {
-  CommandReceiver receiver(kCar, safety::Receiver::kStopPlan);
-  const double end = driven(receiver, 2.0);
-  EXPECT_EQ(receiver.act(end + 0.3, 10.0).throttle, 1.0);  // three cycles are 0.36 s
-  EXPECT_LT(receiver.act(end + 0.4, 10.0).throttle, 0.0);
-  EXPECT_TRUE(receiver.is_timed_out());
-}
-
-TEST(CommandReceiver, HoldsForEverAsTheOriginalWhereItIsTold) {
-  CommandReceiver receiver(kCar, safety::Receiver::kHold);
-  const double end = driven(receiver, 2.0);
-  EXPECT_EQ(receiver.act(end + 60.0, 10.0).throttle, 1.0);
-}
-
-TEST(CommandReceiver, AControllerThatIsSlowAsARuleIsNotSilent) {
-  CommandReceiver receiver(kCar, safety::Receiver::kStopPlan);
-  const double end = driven(receiver, 20.0, 1.0);
-  EXPECT_EQ(receiver.act(end + 2.9, 10.0).throttle, 1.0);
-  EXPECT_LT(receiver.act(end + 3.1, 10.0).throttle, 0.0);
+TEST(CommandReceiver, BrakesWithTheLastSteeringAfterThreeOfItsControllersCycles) {
+  for (const double cycle : {kCycle, 1.0}) {
+    Told car;
+    const double end = car.drive(20.0, cycle);
+    EXPECT_EQ(car.throttle(end + 2.5 * cycle), 1.0);
+    EXPECT_LT(car.throttle(end + 3.4 * cycle), 0.0);
+    EXPECT_TRUE(car.receiver.is_timed_out());
+  }
 }
 
 TEST(CommandReceiver, AnAnswerFromBeforeTheStopIsNotUsedTheNextOneIs) {
-  CommandReceiver receiver(kCar, safety::Receiver::kStopPlan);
-  const double end = driven(receiver, 2.0);
-  static_cast<void>(receiver.act(end + 2.0, 10.0));
-  receiver.answered(straight(0.5));
-  EXPECT_FALSE(receiver.sampled(end + 2.1));
-  EXPECT_LT(receiver.act(end + 2.1, 10.0).throttle, 0.0);
-  receiver.answered(straight(0.5));
-  static_cast<void>(receiver.act(end + 2.15, 10.0));
-  EXPECT_TRUE(receiver.sampled(end + 2.2));
-  EXPECT_EQ(receiver.act(end + 2.2, 10.0).throttle, 0.5);
-  EXPECT_FALSE(receiver.is_timed_out());
+  Told car;
+  const double end = car.drive(2.0);
+  static_cast<void>(car.throttle(end + 2.0));
+  car.receiver.answered(straight(0.5));
+  EXPECT_FALSE(car.receiver.sampled(end + 2.1));
+  EXPECT_LT(car.throttle(end + 2.1), 0.0);
+  car.receiver.answered(straight(0.5));
+  static_cast<void>(car.throttle(end + 2.15));
+  EXPECT_TRUE(car.receiver.sampled(end + 2.2));
+  EXPECT_EQ(car.throttle(end + 2.2), 0.5);
+  EXPECT_FALSE(car.receiver.is_timed_out());
 }
 
-TEST(CommandReceiver, AnAnswerOfAnEndedConnectionIsForgotten) {
-  CommandReceiver receiver(kCar, safety::Receiver::kHold);
-  const double end = driven(receiver, 2.0);
-  receiver.answered(straight(-1.0));
-  receiver.disconnected();
-  EXPECT_TRUE(receiver.sampled(end + kCycle));
-  EXPECT_EQ(receiver.act(end + kCycle, 10.0).throttle, 1.0);
+TEST(CommandReceiver, HoldsForEverWhereItIsToldAndForgetsAnAnswerOfAnEndedConnection) {
+  Told car(safety::Receiver::kHold);
+  const double end = car.drive(2.0);
+  car.receiver.answered(straight(-1.0));
+  car.receiver.disconnected();
+  EXPECT_TRUE(car.receiver.sampled(end + kCycle));
+  EXPECT_EQ(car.throttle(end + kCycle), 1.0);
+  EXPECT_EQ(car.throttle(end + 60.0), 1.0) << "as the original";
 }
 
 TEST(CommandReceiver, PlaysThePlanThatCameByTimeAndDistance) {

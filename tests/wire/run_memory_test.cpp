@@ -137,20 +137,17 @@ TEST(LinkPace, SlowsDownWhenTheLinkDoes) {
   EXPECT_GE(pace.window(), LinkPace::kLeast);
 }
 
-TEST(LinkPace, IgnoresAcknowledgementsOfWhatWasNotSent) {
+TEST(LinkPace, CountsWhatWasSentAndWaitsForAReaderThatReadsNothing) {
   LinkPace pace;
   pace.sent(1000, 0.0);
   pace.received(5000, 0.1);
-  EXPECT_EQ(pace.in_flight(), 1000U);
+  EXPECT_EQ(pace.in_flight(), 1000U) << "more than was sent";
   pace.received(1000, 0.1);
   pace.received(500, 0.2);
   EXPECT_EQ(pace.in_flight(), 0U);
-}
-
-TEST(LinkPace, WaitsForAReaderThatReadsNothing) {
-  LinkPace pace;
+  LinkPace other;
   std::size_t sent = 0;
-  for (; pace.has_room(); sent += 3000) pace.sent(3000, 0.0);
+  for (; other.has_room(); sent += 3000) other.sent(3000, 0.0);
   EXPECT_LE(sent, LinkPace::kFirst + 3000);
 }
 

@@ -70,17 +70,12 @@ TEST(Serve, AnswersEachOfSeveralPipelinedTelemetries) {
   EXPECT_FALSE(client.frame(50ms));
 }
 
-TEST(Serve, ManualDrivingIsAnsweredAtOnceWithoutTheLatency) {
-  Served served(&ServeOptions::latency, 1h);
-  RawSocket client = served.connect();
-  client.send(RawSocket::masked(R"(42["telemetry",null])"));
-  EXPECT_EQ(client.frame()->payload, R"(42["manual",{}])");
-  EXPECT_EQ(served.controller.steps(), 0);
-}
-
-TEST(Serve, BeginsAnewOnceWhenAPersonDrives) {
-  Served served;
-  RawSocket client = served.connect();
+TEST(Serve, APersonWhoDrivesIsAnsweredAtOnceAndTheRunBeginsAnewOnce) {
+  Served slow(&ServeOptions::latency, 1h), served;
+  RawSocket manual = slow.connect(), client = served.connect();
+  manual.send(RawSocket::masked(R"(42["telemetry",null])"));
+  EXPECT_EQ(manual.frame()->payload, R"(42["manual",{}])") << "without the latency";
+  EXPECT_EQ(slow.controller.steps(), 0);
   for (const bool is_manual : {false, true, true, false, false}) {
     client.send(RawSocket::masked(is_manual ? R"(42["telemetry",null])" : std::string(kRealTelemetry)));
     ASSERT_TRUE(client.frame());
@@ -193,16 +188,29 @@ TEST(Serve, NamesTheSceneThatIsNotOurs) {
   EXPECT_TRUE(served.has_logged("PID Controller"));
 }
 
-TEST(Serve, ASecondSimulatorIsRefusedInWordsWhileTheFirstIsDriven) {
+/// What another simulator is answered that asks to be served, too.
+std::string answer_to_another(const Served& served) {
+  RawSocket second(served.port());
+  second.send(test::unity_handshake(served.port()));
+  return second.rest();
+}
+
+TEST(Serve, ASecondSimulatorIsRefusedInWordsWhileTheFirstIsDrivenOrWaitsForItsAnswer) {
   Served served;
   RawSocket first = served.connect();
   driven(first);
-  RawSocket second(served.port());
-  second.send(test::unity_handshake(served.port()));
-  const std::string answer = second.rest();
+  const std::string answer = answer_to_another(served);
   EXPECT_THAT(answer, StartsWith("HTTP/1.1 503"));
   EXPECT_THAT(answer, HasSubstr("another simulator (127.0.0.1:"));
   driven(first);
+  ServeOptions options = Served::immediate();
+  options.quiet_after = 0ns;
+  options.latency = 1h;
+  Served slow(options);
+  RawSocket waiting = slow.connect();
+  waiting.send(RawSocket::masked(kRealTelemetry));
+  while (slow.summary().answers == 0) std::this_thread::yield();
+  EXPECT_THAT(answer_to_another(slow), StartsWith("HTTP/1.1 503"));
 }
 
 TEST(Serve, ASecondSimulatorTakesOverWhenTheFirstIsQuiet) {
@@ -216,19 +224,6 @@ TEST(Serve, ASecondSimulatorTakesOverWhenTheFirstIsQuiet) {
   const auto goodbye = test::good(first.frame());
   EXPECT_EQ(goodbye->opcode, 8);
   EXPECT_THAT(goodbye->payload, HasSubstr("another simulator took over"));
-}
-
-TEST(Serve, ASimulatorThatWaitsForItsAnswerIsNotQuiet) {
-  ServeOptions options = Served::immediate();
-  options.quiet_after = 0ns;
-  options.latency = 1h;
-  Served served(options);
-  RawSocket first = served.connect();
-  first.send(RawSocket::masked(kRealTelemetry));
-  while (served.summary().answers == 0) std::this_thread::yield();
-  RawSocket second(served.port());
-  second.send(test::unity_handshake(served.port()));
-  EXPECT_THAT(second.rest(), StartsWith("HTTP/1.1 503"));
 }
 
 TEST(Serve, AGoodbyeMakesRoomBeforeTheConnectionEnds) {
@@ -253,27 +248,21 @@ TEST(Serve, AfterADisconnectionTheNextSimulatorIsServedAfresh) {
 }
 
 TEST(Serve, AStockClientThatStaysSilentIsGreeted) {
-  Served served(&ServeOptions::open_after, 10ms);
-  RawSocket stock = served.connect();
-  const auto open = test::good(stock.frame());
-  EXPECT_THAT(open->payload, StartsWith("0{\"sid\":"));
-  EXPECT_EQ(json::parse(open->payload.substr(1))["pingInterval"], 25000);
-  stock.send(RawSocket::masked("40"));
-  EXPECT_THAT(stock.frame()->payload, StartsWith("40{\"sid\":"));
-  stock.send(RawSocket::masked("2"));
-  EXPECT_EQ(stock.frame()->payload, "3");
-  driven(stock);
-}
-
-TEST(Serve, AnOldStockClientIsConnectedByTheServer) {
-  Served served(&ServeOptions::open_after, 10ms);
-  RawSocket stock(served.port());
-  std::string request = test::unity_handshake(served.port());
-  request.replace(request.find("EIO=4"), 5, "EIO=3");
-  stock.send(request);
-  stock.until("\r\n\r\n");
-  EXPECT_THAT(stock.frame()->payload, StartsWith("0{"));
-  EXPECT_EQ(stock.frame()->payload, "40");
+  for (const std::string version : {"EIO=4", "EIO=3"}) {
+    Served served(&ServeOptions::open_after, 10ms);
+    RawSocket stock(served.port());
+    std::string request = test::unity_handshake(served.port());
+    stock.send(request.replace(request.find("EIO=4"), 5, version));
+    stock.until("\r\n\r\n");
+    const auto open = test::good(stock.frame());
+    EXPECT_THAT(open->payload, StartsWith("0{\"sid\":"));
+    EXPECT_EQ(json::parse(open->payload.substr(1))["pingInterval"], 25000);
+    if (version == "EIO=4") stock.send(RawSocket::masked("40"));
+    EXPECT_THAT(stock.frame()->payload, StartsWith(version == "EIO=4" ? "40{\"sid\":" : "40"));
+    stock.send(RawSocket::masked("2"));
+    EXPECT_EQ(stock.frame()->payload, "3");
+    driven(stock);
+  }
 }
 
 TEST(Serve, SilenceIsReportedAndItsEndToo) {

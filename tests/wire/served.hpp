@@ -60,9 +60,6 @@ class Served {
   explicit Served(ServeOptions options = immediate()) {
     options.server.port = 0;
     ServeHooks hooks;
-    hooks.on_other_road = [this](double distance) {
-      note("another road at " + std::to_string(std::lround(distance)));
-    };
     hooks.on_clock = hooks.log = [this](std::string_view line) { note(line); };
     endpoint_ =
         std::make_unique<UdacityEndpoint>(options, std::make_unique<Borrowed>(controller), std::move(hooks));
@@ -107,13 +104,6 @@ class Served {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, std::chrono::seconds{10},
                              [&] { return log_.find(words) != std::string::npos; });
-  }
-
-  [[nodiscard]] int count_logged(std::string_view words) {
-    const std::lock_guard lock(mutex_);
-    int count = 0;
-    for (std::size_t at = log_.find(words); at != std::string::npos; at = log_.find(words, at + 1)) ++count;
-    return count;
   }
 
   FixedController controller;

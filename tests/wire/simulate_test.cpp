@@ -104,39 +104,52 @@ Outcome run(const SimulateOptions& options, const scenario::Scenario& scenario, 
   return outcome;
 }
 
+/// What comes of a run beside this program.
+struct Driven {
+  SimulateReport report;
+  std::string log;
+};
+Driven drive(const ScriptedServer& server, const scenario::Scenario& scenario, SimulateOptions options = {}) {
+  options.url = server.url();
+  const Outcome outcome = run(options, scenario);
+  return {*test::good(outcome.report), outcome.log};
+}
+
 TEST(Simulate, PassesTheTokenInLockStepAndDrivesByTheAnswers) {
   ScriptedServer server([](int, const std::string&) { return std::vector{kStraight}; }, 50ms);
-  const Outcome outcome = run({.url = server.url()}, short_run(1.5));
-  ASSERT_TRUE(outcome.report) << outcome.report.error().message;
+  const SimulateReport report = drive(server, short_run(1.5)).report;
   EXPECT_EQ(server.pipelined(), 0);
-  EXPECT_EQ(outcome.report->broken_answers, 0U);
-  EXPECT_EQ(outcome.report->connections, 1U);
+  EXPECT_EQ(report.broken_answers, 0U);
+  EXPECT_EQ(report.connections, 1U);
   // A cycle is 50 ms of latency and 20 ms of turn-around, so that 1.5 s hold at most 22.
-  EXPECT_GE(outcome.report->answers, 5U);
-  EXPECT_LE(outcome.report->answers, 22U);
-  EXPECT_GT(outcome.report->run.total.top_speed, 0.5);  // full throttle, as soon as it was picked up
-  EXPECT_EQ(outcome.report->run.end_reason, "time limit reached");
+  EXPECT_GE(report.answers, 5U);
+  EXPECT_LE(report.answers, 22U);
+  EXPECT_GT(report.run.total.top_speed, 0.5);  // full throttle, as soon as it was picked up
+  EXPECT_EQ(report.run.end_reason, "time limit reached");
 }
 
 TEST(Simulate, EndsWithAProgramThatNeverAnswersWhereItShall) {
-  ScriptedServer server([](int, const std::string&) { return std::vector<std::string>{}; });
-  const Outcome outcome = run({.url = server.url(), .hopeless_after = 300ms}, short_run(600.0));
-  ASSERT_TRUE(outcome.report) << outcome.report.error().message;
-  EXPECT_EQ(outcome.report->answers, 0U);
-  EXPECT_EQ(outcome.report->run.end_reason, "no usable answer within 0.3 s");
+  const ScriptedServer server([](int, const std::string&) { return std::vector<std::string>{}; });
+  const SimulateReport report = drive(server, short_run(600.0), {.hopeless_after = 300ms}).report;
+  EXPECT_EQ(report.answers, 0U);
+  EXPECT_EQ(report.run.end_reason, "no usable answer within 0.3 s");
 }
 
-TEST(Simulate, SendsWhatTheOriginalSends) {
+TEST(Simulate, SendsWhatTheOriginalSendsWithAnEchoThatIsOneCycleOld) {
   ScriptedServer server;
-  static_cast<void>(run({.url = server.url()}, short_run(0.3)));
-  ASSERT_FALSE(server.messages().empty());
+  drive(server, short_run(0.5));
+  const std::vector<std::string> messages = server.messages();
+  ASSERT_GE(messages.size(), 3U);
   EXPECT_THAT(
-      server.messages()[0],
+      messages[0],
       testing::MatchesRegex(
           R"re(42\["telemetry",\{"ptsx":\[[-0-9.,]+\],"ptsy":\[[-0-9.,]+\],"psi_unity":[0-9.]+,)re"
           R"re("psi":[0-9.]+,"x":[-0-9.]+,"y":[-0-9.]+,"steering_angle":0,"throttle":0,"speed":0\}\])re"));
-  const auto first = protocol::parse_telemetry(server.messages()[0]);
+  const auto first = protocol::parse_telemetry(messages[0]);
   EXPECT_EQ(std::get<model::Measurement>(first).waypoint_count, 6);
+  // The first answer is picked up when the second telemetry is sampled, and acts before the third.
+  EXPECT_THAT(messages[1], HasSubstr("\"throttle\":0,"));
+  EXPECT_THAT(messages[2], HasSubstr("\"throttle\":1,"));
 }
 
 TEST(Simulate, SendsTheWaypointsOfTheMeasuredPlaceAsDriveDoes) {
@@ -146,93 +159,64 @@ TEST(Simulate, SendsTheWaypointsOfTheMeasuredPlaceAsDriveDoes) {
   ScriptedServer server;
   int frames = 0;
   const std::atomic<bool> stop{false};
-  const auto report =
-      simulate({.url = server.url()}, noisy,
-               {.on_frame =
-                    [&](const telemetry::Frame& frame) {
-                      const model::Measurement& seen = frame.measurement;
-                      model::Measurement expected;
-                      sim::select_waypoints(points, {.x = seen.x, .y = seen.y, .psi = seen.psi},
-                                            noisy.waypoints_sent, expected);
-                      ASSERT_EQ(seen.waypoint_count, expected.waypoint_count);
-                      ASSERT_EQ(seen.waypoints[0].x(), expected.waypoints[0].x());
-                      ++frames;
-                    }},
-               stop);
-  ASSERT_TRUE(report);
+  const auto look = [&](const telemetry::Frame& frame) {
+    const model::Measurement& seen = frame.measurement;
+    model::Measurement expected;
+    sim::select_waypoints(points, {.x = seen.x, .y = seen.y, .psi = seen.psi}, noisy.waypoints_sent,
+                          expected);
+    ASSERT_EQ(seen.waypoint_count, expected.waypoint_count);
+    ASSERT_EQ(seen.waypoints[0].x(), expected.waypoints[0].x());
+    ++frames;
+  };
+  ASSERT_TRUE(simulate({.url = server.url()}, noisy, {.on_frame = look}, stop));
   EXPECT_GT(frames, 5);
 }
 
-TEST(Simulate, TheEchoIsOneCycleOld) {
-  ScriptedServer server;
-  static_cast<void>(run({.url = server.url()}, short_run(0.5)));
-  const std::vector<std::string> messages = server.messages();
-  ASSERT_GE(messages.size(), 3U);
-  // The first answer is picked up when the second telemetry is sampled, and acts before the third.
-  EXPECT_THAT(messages[1], HasSubstr("\"throttle\":0,"));
-  EXPECT_THAT(messages[2], HasSubstr("\"throttle\":1,"));
-}
-
-TEST(Simulate, SaysInWordsWhatABrokenAnswerWasAndDrivesOn) {
-  ScriptedServer server([](int n, const std::string&) {
-    return std::vector<std::string>{n == 0 ? R"(42["steer",{"steering_angle":0.1,"throttle":null}])"
-                                           : kStraight};
+TEST(Simulate, SaysInWordsWhatIsWrongWithAnAnswerAndDrivesOn) {
+  const ScriptedServer server([](int n, const std::string&) {
+    return n == 0 ? std::vector<std::string>{R"(42["steer",{"steering_angle":0.1,"throttle":null}])"}
+                  : std::vector{kStraight, kStraight};
   });
-  const Outcome outcome = run({.url = server.url()}, short_run(0.5));
-  ASSERT_TRUE(outcome.report);
-  EXPECT_EQ(outcome.report->broken_answers, 1U);
-  EXPECT_GE(outcome.report->answers, 2U);
-  EXPECT_THAT(outcome.log, HasSubstr("broken answer: throttle: got null, expected a number (the original"));
-}
-
-TEST(Simulate, CountsAnswersThatNobodyAskedFor) {
-  ScriptedServer server([](int, const std::string&) { return std::vector{kStraight, kStraight}; });
-  const Outcome outcome = run({.url = server.url()}, short_run(0.3));
-  ASSERT_TRUE(outcome.report);
-  EXPECT_GE(outcome.report->extra_answers, 1U);
-  EXPECT_THAT(outcome.log, HasSubstr("two loops"));
+  const auto [report, log] = drive(server, short_run(0.5));
+  EXPECT_EQ(report.broken_answers, 1U);
+  EXPECT_GE(report.answers, 2U);
+  EXPECT_THAT(log, HasSubstr("broken answer: throttle: got null, expected a number (the original"));
+  EXPECT_GE(report.extra_answers, 1U) << "that nobody asked for";
+  EXPECT_THAT(log, HasSubstr("two loops"));
 }
 
 TEST(Simulate, NoticesASilentControllerAndConnectsAnew) {
-  ScriptedServer server(
+  const ScriptedServer server(
       [](int n, const std::string&) { return n == 1 ? std::vector<std::string>{} : std::vector{kStraight}; });
-  const Outcome outcome =
-      run({.url = server.url(), .retry_after = 20ms, .complain_after = 50ms, .give_up_after = 150ms},
-          short_run(1.0));
-  ASSERT_TRUE(outcome.report);
-  EXPECT_EQ(outcome.report->silences, 1U);
-  EXPECT_EQ(outcome.report->connections, 2U);
-  EXPECT_GE(outcome.report->answers, 2U);
-  EXPECT_THAT(outcome.log, HasSubstr("no answer for 50 ms: the original simulator would wait for ever"));
+  const auto [report, log] =
+      drive(server, short_run(1.0), {.retry_after = 20ms, .complain_after = 50ms, .give_up_after = 150ms});
+  EXPECT_EQ(report.silences, 1U);
+  EXPECT_EQ(report.connections, 2U);
+  EXPECT_GE(report.answers, 2U);
+  EXPECT_THAT(log, HasSubstr("no answer for 50 ms: the original simulator would wait for ever"));
 }
 
-/// Full throttle for 1.2 s, then silence.
-Outcome timed_out(safety::Receiver receiver) {
-  const auto began = std::make_shared<std::optional<std::chrono::steady_clock::time_point>>();
-  ScriptedServer server([began](int, const std::string&) {
-    const auto now = std::chrono::steady_clock::now();
-    if (!*began) *began = now;
-    return now - **began < 1200ms ? std::vector{kStraight} : std::vector<std::string>{};
-  });
-  scenario::Scenario scenario = short_run(5.0);
-  scenario.guard.receiver = receiver;
-  return run({.url = server.url()}, scenario);
-}
-
-TEST(Simulate, StopsTheCarOfAControllerThatFallsSilent) {
-  const Outcome outcome = timed_out(safety::Receiver::kStopPlan);
-  ASSERT_TRUE(outcome.report);
-  EXPECT_GE(outcome.report->stops, 1U);
-  EXPECT_THAT(outcome.log, HasSubstr("no command in time: the car is stopped from "));
-  EXPECT_THAT(outcome.log, HasSubstr("the car stands, its outermost wheel "));
-  EXPECT_THAT(outcome.log, HasSubstr("the road's edge: the controller has not answered for "));
-}
-
-TEST(Simulate, HoldsTheLastCommandOfAControllerThatFallsSilentWhereItIsTold) {
-  const Outcome outcome = timed_out(safety::Receiver::kHold);
-  ASSERT_TRUE(outcome.report);
-  EXPECT_EQ(outcome.report->stops, 0U);
-  EXPECT_GT(outcome.report->run.total.top_speed, 10.0);
+TEST(Simulate, StopsTheCarOfAControllerThatFallsSilentUnlessItHoldsTheLastCommand) {
+  for (const safety::Receiver receiver : {safety::Receiver::kStopPlan, safety::Receiver::kHold}) {
+    std::optional<std::chrono::steady_clock::time_point> began;
+    const ScriptedServer server([&](int, const std::string&) {  // full throttle for 1.2 s
+      const auto now = std::chrono::steady_clock::now();
+      if (!began) began = now;
+      return now - *began < 1200ms ? std::vector{kStraight} : std::vector<std::string>{};
+    });
+    scenario::Scenario scenario = short_run(5.0);
+    scenario.guard.receiver = receiver;
+    const auto [report, log] = drive(server, scenario);
+    if (receiver == safety::Receiver::kHold) {
+      EXPECT_EQ(report.stops, 0U);
+      EXPECT_GT(report.run.total.top_speed, 10.0);
+      continue;
+    }
+    EXPECT_GE(report.stops, 1U);
+    EXPECT_THAT(log, HasSubstr("no command in time: the car is stopped from "));
+    EXPECT_THAT(log, HasSubstr("the car stands, its outermost wheel "));
+    EXPECT_THAT(log, HasSubstr("the road's edge: the controller has not answered for "));
+  }
 }
 
 TEST(Simulate, SaysThatItPlaysStopPlansUnlessItHoldsAsTheOriginal) {
@@ -253,12 +237,11 @@ TEST(Simulate, ManualDrivingSendsNull) {
   ScriptedServer server([](int, const std::string& message) {
     return std::vector{message == R"(42["telemetry",null])" ? protocol::encode_manual() : kStraight};
   });
-  const Outcome outcome = run({.url = server.url(), .manual_time = 0.2}, short_run(0.6));
-  ASSERT_TRUE(outcome.report);
+  const auto [report, log] = drive(server, short_run(0.6), {.manual_time = 0.2});
   EXPECT_EQ(server.messages().at(0), R"(42["telemetry",null])");
   EXPECT_THAT(server.messages().back(), HasSubstr("ptsx"));
-  EXPECT_GE(outcome.report->answers, 1U);
-  EXPECT_THAT(outcome.log, Not(HasSubstr("did not understand")));
+  EXPECT_GE(report.answers, 1U);
+  EXPECT_THAT(log, Not(HasSubstr("did not understand")));
 }
 
 TEST(Simulate, WarnsOfAnOpenPacketAndAnswersAPing) {
@@ -266,8 +249,7 @@ TEST(Simulate, WarnsOfAnOpenPacketAndAnswersAPing) {
     if (message == "3") return std::vector<std::string>{};
     return n == 0 ? std::vector<std::string>{"0{\"sid\":\"x\"}", "2", kStraight} : std::vector{kStraight};
   });
-  const Outcome outcome = run({.url = server.url()}, short_run(0.3));
-  EXPECT_THAT(outcome.log, HasSubstr("open packet"));
+  EXPECT_THAT(drive(server, short_run(0.3)).log, HasSubstr("open packet"));
   EXPECT_THAT(server.messages(), Contains("3"));
 }
 

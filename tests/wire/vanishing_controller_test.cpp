@@ -19,15 +19,15 @@ namespace {
 
 constexpr double kLast = 45.0;  // [s] the first lap: later some stops from beyond 37 m/s end beside the road
 constexpr double kBetween = kDrivesAll ? 2.3 : 6.9;  // [s]
-constexpr double kCycle = 0.12;  // [s] of the original controllers: 100 ms of sleep, 20 ms of turn-around
+constexpr double kPeriod = 0.12;  // [s] of the original controllers: 100 ms of sleep, 20 ms of turn-around
 
-struct Outcome {
+struct Vanished {
   double least_edge = 1e9;  ///< after that [m]
   double speed_then = 0.0;  ///< [m/s]
   double speed_at_end = 0.0;
 };
 
-Outcome vanish(scenario::Scenario scenario, double moment) {
+Vanished vanish(scenario::Scenario scenario, double moment) {
   scenario.guard.road = safety::GuardRoad::kWaypoints;
   const road::Track track = run::make_track(scenario).value();
   const road::Track waypoints = run::make_waypoints(track).value();
@@ -38,7 +38,7 @@ Outcome vanish(scenario::Scenario scenario, double moment) {
   CommandReceiver receiver(scenario.vehicle, scenario.guard.receiver);
   auto frame = std::make_unique<telemetry::Frame>();
   world.place(track.start_s(), track.start_d());
-  Outcome outcome;
+  Vanished outcome;
   double next = 0.0;
   while (world.time() < moment + 12.0) {
     if (world.time() >= next - 1e-9 && world.time() < moment) {
@@ -48,12 +48,12 @@ Outcome vanish(scenario::Scenario scenario, double moment) {
       frame->measurement =
           std::get<model::Measurement>(protocol::parse_telemetry(protocol::encode_telemetry(now)));
       frame->measurement.time = world.time() + 100.0;  // the controller's clock is another one
-      frame->measurement.delay = kCycle;
-      cycle.step({.interval = kCycle}, *frame);
+      frame->measurement.delay = kPeriod;
+      cycle.step({.interval = kPeriod}, *frame);
       const std::string text =
           protocol::encode_steer(frame->result.command, frame->result.plan, {}, cycle.stop(), frame->time);
       receiver.answered(std::get<protocol::UdacitySteer>(protocol::parse_reply(text)));
-      next += kCycle;
+      next += kPeriod;
       outcome.speed_then = plant->output().speed;
     }
     world.advance(receiver.act(world.time(), plant->output().speed));
@@ -72,7 +72,7 @@ class AControllerThatVanishes : public ::testing::TestWithParam<std::tuple<const
 
 TEST_P(AControllerThatVanishes, LeavesTheCarStandingOnTheRoadWhereItSentStopPlans) {
   for (double moment = 3.1; moment < kLast; moment += kBetween) {
-    const Outcome outcome = vanish(scenario(), moment);
+    const Vanished outcome = vanish(scenario(), moment);
     EXPECT_GE(outcome.least_edge, 0.0) << moment << " s, from " << outcome.speed_then << " m/s";
     EXPECT_LT(outcome.speed_at_end, 0.1) << moment;
   }

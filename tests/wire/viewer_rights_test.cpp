@@ -33,14 +33,20 @@ TEST_F(Viewer, ThatMayWatchOnlyChangesNothing) {
   EXPECT_FALSE(is_paused);
 }
 
-TEST_F(Viewer, WithoutAnyRightOrRoomIsRefused) {
+TEST_F(Viewer, NeedsARightRoomAndOneOfTheTwoSubprotocols) {
   start({});
-  net::UpgradeRequest request{.id = 5};
-  request.subprotocols = {"foxglove.sdk.v1"};
-  EXPECT_EQ(endpoint->on_upgrade(request).status, 403);
-  request.may_watch = true;
-  request.is_crowded = true;
-  EXPECT_EQ(endpoint->on_upgrade(request).status, 503);
+  const auto answer_to = [&](bool may_watch, bool is_crowded, std::vector<std::string> offered) {
+    net::UpgradeRequest request{.id = 5, .may_watch = may_watch};
+    request.is_crowded = is_crowded;
+    request.subprotocols = std::move(offered);
+    return endpoint->on_upgrade(request);
+  };
+  EXPECT_EQ(answer_to(false, false, {"foxglove.sdk.v1"}).status, 403);
+  EXPECT_EQ(answer_to(true, true, {"foxglove.sdk.v1"}).status, 503);
+  EXPECT_EQ(answer_to(true, false, {"foxglove.websocket.v1"}).subprotocol, "foxglove.websocket.v1");
+  EXPECT_EQ(answer_to(true, false, {"foxglove.websocket.v1", "foxglove.sdk.v1"}).subprotocol,
+            "foxglove.sdk.v1");
+  EXPECT_FALSE(answer_to(true, false, {"soap"}).accept);
 }
 
 // After 256 laps no dashboard could connect: all were sent at once, and no more may wait for a connection.

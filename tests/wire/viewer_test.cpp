@@ -237,18 +237,6 @@ TEST_F(Viewer, PausesStepsAndResetsTheRun) {
   EXPECT_EQ(log, "pause step ");
 }
 
-TEST_F(Viewer, MustSpeakOneOfTheTwoSubprotocols) {
-  start({});
-  const auto answer_to = [&](std::vector<std::string> offered) {
-    net::UpgradeRequest request{.may_watch = true};
-    request.subprotocols = std::move(offered);
-    return endpoint->on_upgrade(request);
-  };
-  EXPECT_EQ(answer_to({"foxglove.websocket.v1"}).subprotocol, "foxglove.websocket.v1");
-  EXPECT_EQ(answer_to({"foxglove.websocket.v1", "foxglove.sdk.v1"}).subprotocol, "foxglove.sdk.v1");
-  EXPECT_FALSE(answer_to({"soap"}).accept);
-}
-
 TEST_F(Viewer, IsToldWhatFailedAfterItWasAcceptedWhoeverAsked) {
   Store store;
   start({.parameters = &store});
