@@ -219,10 +219,14 @@ TEST(Cli, APortThatIsTakenIsTheEnvironmentsFault) {
   ::close(taken);
 }
 
-TEST(Cli, PrintsALinkWithItsToken) {
+TEST(Cli, PrintsALinkWithItsTokenAndEndsARunAtCtrlCWithTheResultsSoFar) {
   const Outcome one = interrupted_program("drive --port 0 --laps 9 --json", "Ctrl-C ends");
   EXPECT_THAT(one.err,
               ::testing::ContainsRegex(R"(dashboard at http://localhost:[0-9]+/\?token=[-_A-Za-z0-9]+ )"));
+  const Json report = Json::parse(one.out, nullptr, false);
+  ASSERT_FALSE(report.is_discarded()) << one.out << one.err;
+  EXPECT_EQ(report["completed"], false);
+  EXPECT_EQ(one.code, 1);
   const Outcome none = interrupted_program("drive --port 0 --laps 9 --json --no-token", "Ctrl-C ends");
   EXPECT_THAT(none.err, ::testing::ContainsRegex("dashboard at http://localhost:[0-9]+/ [(]Ctrl-C ends[)]"));
 }
@@ -231,14 +235,6 @@ TEST(Cli, ResultsThatCannotBeWrittenAreNotASuccess) {
   const Outcome outcome = chicane_program("list presets > /dev/full");
   EXPECT_EQ(outcome.code, 3);
   EXPECT_THAT(outcome.err, HasSubstr("could not be written"));
-}
-
-TEST(Cli, CtrlCEndsARunWithTheResultsSoFar) {
-  const Outcome outcome = interrupted_program("drive --port 0 --laps 9 --json", "Ctrl-C ends");
-  const Json report = Json::parse(outcome.out, nullptr, false);
-  ASSERT_FALSE(report.is_discarded()) << outcome.out << outcome.err;
-  EXPECT_EQ(report["completed"], false);
-  EXPECT_EQ(outcome.code, 1);
 }
 
 TEST(Cli, NothingASimulatorStartedOutlivesIt) {
