@@ -333,7 +333,8 @@ TEST(LiveSettings, DescribeThemselvesInJson) {
   expect("cubic_mpc.latency_handling", {{"kind", "choice"}});
   expect("vehicle.drive_power_per_mass_wpkg", {{"default", "inf"}, {"may_be_infinite", true}});
   expect("manual.is_on", {{"kind", "bool"}});
-  expect("manual.steer", {{"minimum", -1.0}, {"maximum", 1.0}});
+  expect("manual.steer",
+         {{"minimum", -1.0}, {"maximum", 1.0}, {"meaning", "Share of the steering lock, left positive."}});
   expect("run.pace", {{"maximum", 20}});
   for (const auto& each : schema) EXPECT_FALSE(each["meaning"].get<std::string>().empty()) << each["key"];
   EXPECT_EQ(schema[0]["key"], protocol::list().front().key) << "the controls stand behind";

@@ -72,17 +72,24 @@ TEST(ServedRun, AnswersOneSimulatorAfterTheOtherAndReportsOnAll) {
 TEST(ServedRun, NamesTheRoadThatIsNotTheSimulators) {
   Serving serving;
   std::mutex mutex;
-  int named = 0;
-  serving.start({.say = [&](std::string_view line) {
+  std::vector<std::string> named;
+  double throttle_since = 0.0;
+  const auto look = [&](const telemetry::Frame& frame) {
     const std::lock_guard lock(mutex);
-    named += line.find("another road than oval, up to") != std::string_view::npos ? 1 : 0;
-  }});
+    if (!named.empty()) throttle_since = std::max(throttle_since, frame.result.command.throttle);
+  };
+  const auto hear = [&](std::string_view line) {
+    const std::lock_guard lock(mutex);
+    if (line.find("another road") != std::string_view::npos) named.emplace_back(line);
+  };
+  serving.start({.on_frame = look, .say = hear});
   scenario::Scenario other = short_scenario();
   other.track = "speedway";
   other.time_limit = 4.0;  // until waypoints are shown that are not oval's, too
   serving.simulate(other);
   const wire::ServeSummary summary = serving.finish();
-  EXPECT_EQ(named, 1);
+  EXPECT_THAT(named, ElementsAre(testing::ContainsRegex("another road than oval, up to [1-9][0-9]* m away")));
+  EXPECT_GT(throttle_since, 0.0) << "it is driven";
   EXPECT_EQ(summary.run.track, "");
   EXPECT_EQ(summary.run.off_track_events, 0);
   EXPECT_EQ(summary.run.why_no_limit, "the simulator drives on another road than --track");

@@ -70,17 +70,20 @@ std::string refusal_of(const std::string& text) { return test::refusal_of(parse_
 
 TEST(CsvTrack, FindsTheLineOfNames) {
   const std::string number = ", expected a finite number with a decimal point";
-  test::expect_said(refusal_of,
-                    {{"x_m,y_m\nnan,1\n", "a.csv:2: x_m: got nan" + number},
-                     {"# x_m,y_m\n\n,2\n", "a.csv:3: x_m: got nothing" + number},
-                     {"None,1\n2,3\n", "a.csv:1: x_m: got None" + number},  // no line of names
-                     {"# v_mps, ax_max_machines_mps2\n0,9\n1,8\n",
-                      "a.csv:1: header: got v_mps, ax_max_machines_mps2, expected columns x and y (or x_m "
-                      "and y_m) in metres"},
-                     {"# speed_mps time_s\n0 9\n1 8\n", "header: got speed_mps"},
-                     {"tag,x,y\nblue,0,1\n",
-                      "a.csv: cones: got 1 of the left side and 0 of the right one, expected at least 3"},
-                     {"x,y,colour\n0,1,Yellow\n", "a.csv: cones: got 0 of"}});
+  for (const auto& [text, words] : test::Said{
+           {"x_m,y_m\nnan,1\n", "a.csv:2: x_m: got nan" + number},
+           {"# x_m,y_m\n\n,2\n", "a.csv:3: x_m: got nothing" + number},
+           {"None,1\n2,3\n", "a.csv:1: x_m: got None" + number},  // no line of names
+           {"# v_mps, ax_max_machines_mps2\n0,9\n1,8\n",
+            "a.csv:1: header: got v_mps, ax_max_machines_mps2, expected columns x and y (or x_m and y_m) in "
+            "metres"}})
+    EXPECT_EQ(refusal_of(text), words);
+  test::expect_said(
+      refusal_of,
+      {{"# speed_mps time_s\n0 9\n1 8\n", "header: got speed_mps"},
+       {"tag,x,y\nblue,0,1\n",
+        "a.csv: cones: got 1 of the left side and 0 of the right one, expected at least 3 of each"},
+       {"x,y,colour\n0,1,Yellow\n", "a.csv: cones: got 0 of"}});
   for (const char* row : {"0,0,18.3,30\n2,0,18.3,30\n", "0;0;8;3.2\n2;0;8;3.2\n", "0,0,1\n", "0 0 1 2 3\n"})
     EXPECT_THAT(refusal_of(row),
                 HasSubstr("expected a line that names them, like x_m,y_m,w_tr_right_m,w_tr_left_m"));

@@ -168,7 +168,7 @@ TEST(ForeignTracks, NamesElementAndLineOfAFault) {
        {"image: none.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n",
         "f.xml: image: got none.pgm, which cannot be read, expected a PGM or PNG file"},
        {"image: none.pgm\nresolution: 0.05\norigin: [0, 0, -nan]\n",
-        "f.xml:3: origin: yaw: got -nan, expected a finite"},
+        "f.xml:3: origin: yaw: got -nan, expected a finite number"},
        // Jumps, kinks and junctions of OpenDRIVE.
        {open_drive({{0, 0, 0, 100, 0}, {100, 1.5, 0, 50, 0.02}}),
         "geometry: got a jump of 1.50 m at s = 100.0 m of road 7, expected pieces that join"},

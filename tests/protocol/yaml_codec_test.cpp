@@ -295,7 +295,9 @@ TEST(FaultYaml, RefusesWithFileLineAndKey) {
       {{"faults: 3\n", "f.yaml:1: faults: got 3, expected a list"},
        {"faults:\n  - 3\n", "f.yaml:2: faults: got 3, expected {name: half_grip"},
        {"faults:\n  - {name: half_grip, at: 3}\n", "f.yaml:2: at: got an unknown key, expected name"},
-       {"laps: 1\nfaults:\n  - {name: hlaf_grip, at_s: 3}\n", "f.yaml:3: faults.name: got hlaf_grip"},
+       {"laps: 1\nfaults:\n  - {name: hlaf_grip, at_s: 3}\n",
+        "f.yaml:3: faults.name: got hlaf_grip, expected one of `chicane list faults` (did you mean "
+        "half_grip?)"},
        {"faults:\n  - {name: half_grip, at_s: [1]}\n", "f.yaml:2: at_s: got a list, expected text"},
        {"faults:\n  - {name: half_grip, at_s: 1, for_s: 0}\n", "faults.for_s: got 0"}});
 }

@@ -42,8 +42,8 @@ TEST(CommandReceiver, BrakesWithTheLastSteeringAfterThreeOfItsControllersCycles)
   for (const double cycle : {kCycle, 1.0}) {
     Told car;
     const double end = car.drive(20.0, cycle);
-    EXPECT_EQ(car.throttle(end + 2.5 * cycle), 1.0);
-    EXPECT_LT(car.throttle(end + 3.4 * cycle), 0.0);
+    EXPECT_EQ(car.throttle(end + 2.9 * cycle), 1.0);
+    EXPECT_LT(car.throttle(end + 3.1 * cycle), 0.0);
     EXPECT_TRUE(car.receiver.is_timed_out());
   }
 }
