@@ -52,17 +52,17 @@ TEST_P(GoldenRun, HasTheBitsItHad) {
 INSTANTIATE_TEST_SUITE_P(
     Runs, GoldenRun,
     ::testing::Values(
-        Golden{"default_udacity", "track=lakeside", 0x0c8200a0a532b872, 0x950a47c60c727ebf},
-        Golden{"default_road_car", "track=hairpins car=road-car", 0x66f7b307eb7a2bf0, 0x57d747ec641edf97},
-        Golden{"with_noise", "track=oval sensor.position_noise_m=0.05 seed=7", 0xa5873ef58cd3a8c4,
+        Golden{"default_udacity", "track=lakeside", 0xbf2aaf77e1ff2af2, 0x950a47c60c727ebf},
+        Golden{"default_road_car", "track=hairpins car=road-car", 0x36e09f0cef85d10a, 0x57d747ec641edf97},
+        Golden{"with_noise", "track=oval sensor.position_noise_m=0.05 seed=7", 0x71235dbfeb458780,
                0xf9e9078b0ac199ac},
         Golden{"weighted", "preset=weighted guard.mode=off", 0x2289abd6e0b12064, 0xb8e2970005c7aff6},
         Golden{"delay_in_model", "preset=delay-in-model guard.mode=off", 0xd30ef6e02d73d5c9,
                0xa462655e2609913f},
-        Golden{"race", "preset=race time_limit_s=6", 0x1add3ecf2b3039e8, 0xf71758ca4d4b4307},
-        Golden{"faults", "time_limit_s=10 fault=gps_noise@3 fault=frozen_sensor@6", 0xc1838157236eb84e,
+        Golden{"race", "preset=race time_limit_s=6", 0x5102643fdbd123a0, 0xf71758ca4d4b4307},
+        Golden{"faults", "time_limit_s=10 fault=gps_noise@3 fault=frozen_sensor@6", 0x415042abc01d4352,
                0x7eeea3b0da449642},
-        Golden{"model_car", "car=f1tenth time_limit_s=6", 0x4131fcf0c35031a8, 0x2dfcaddfe1711c09},
+        Golden{"model_car", "car=f1tenth time_limit_s=6", 0x0cedc07a9e2fa214, 0x2dfcaddfe1711c09},
         Golden{"pid", "preset=pid latency_ms=37", 0xdab4f526bb2d5617, 0xdab4f526bb2d5617}),
     [](const auto& run) { return std::string(run.param.name); });
 
