@@ -354,9 +354,9 @@ FaultRun draw(Random& chance) {
 }
 
 /// Other runs: --gtest_random_seed=N. Cars that face the edge nearer than they turn count apart: there is no
-/// reverse gear; one in 60 does. The large search counts how many others stand, the sample must have none.
+/// reverse gear. The large search counts how many others stand, the sample must have none.
 TEST(MovesAgain, AfterAFaultThatHasEnded) {
-  Random chance(57 + static_cast<std::uint64_t>(testing::GTEST_FLAG(random_seed)));
+  Random chance(58 + static_cast<std::uint64_t>(testing::GTEST_FLAG(random_seed)));
   constexpr int kRuns = kDrivesAll ? 20'000 : 4, kMost = kDrivesAll ? kRuns / 200 : 0;
   int stood = 0, faces_edge = 0;
   std::string which;
@@ -370,7 +370,7 @@ TEST(MovesAgain, AfterAFaultThatHasEnded) {
                          run.track, run.fault, run.at, standing.time, standing.why);
   }
   EXPECT_LE(stood, kMost) << faces_edge << " others face the edge nearer than they turn" << which;
-  EXPECT_LE(faces_edge, kDrivesAll ? kRuns / 50 : 1);
+  EXPECT_LE(faces_edge, kDrivesAll ? kRuns / 50 : 0);
 }
 
 }  // namespace

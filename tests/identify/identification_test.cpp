@@ -85,9 +85,10 @@ TEST(Identification, DoesNotPredictByCommandsThatDidNotDriveTheCar) {
   DriveLog log = drive_log({{"car", "road-car"}, {"track", "hairpins"}, {"laps", "1"}});
   std::vector<double> steer;
   for (const SentCommand& commands : log.commands) steer.push_back(commands.steer);
-  for (const std::size_t quarter : {1, 2, 3}) {  // of the lap
+  // Quarters of the lap and signs; mirrored by the first quarter the commands predict by chance.
+  for (const auto& [quarter, sign] : {std::pair{1U, 1.0}, {2U, -1.0}, {3U, -1.0}}) {
     for (std::size_t i = 0; i < steer.size(); ++i)
-      log.commands[i].steer = steer[(i + quarter * steer.size() / 4) % steer.size()];
+      log.commands[i].steer = sign * steer[(i + quarter * steer.size() / 4) % steer.size()];
     const auto found = test::good(identify({log}, guess(), {.hold_out = 0.3, .is_rough = true}));
     EXPECT_FALSE(found->predicts()) << found->held_out[0].position << ' ' << found->held_out[0].kept_position;
   }

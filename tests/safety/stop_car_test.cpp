@@ -58,7 +58,7 @@ TEST(StopCar, KnowsLockingWheelsTheBalanceOfDownforceAndMotors) {
 }
 
 /// What nobody corrects has to be right: braked in a bend by the same commands, the car turns as the plant.
-/// The controllers' model is further off.
+/// The controllers' model is a third further off at 35 m/s.
 TEST(StopCar, TurnsAsThePlantWhereItBrakesInABend) {
   const model::VehicleParams params = plain_car();
   const StopCar car(params);

@@ -5,12 +5,13 @@
 
 namespace chicane::test {
 
-/// What is written equals the file that is kept of it in tests/. CHICANE_WRITE_FIXTURES=1 renews the file: look
-/// at the difference before you keep it.
+/// What is written equals the file that is kept of it in tests/. CHICANE_WRITE_FIXTURES=1 renews the file:
+/// look at the difference before you keep it.
 inline void expect_kept(const std::string& file, const std::string& text) {
   const fs::path path = fs::path(CHICANE_SOURCE_DIR) / "tests" / file;
   if (std::getenv("CHICANE_WRITE_FIXTURES") != nullptr) std::ofstream(path, std::ios::binary) << text;
-  EXPECT_EQ(text, content_of(path)) << file << "; wanted? cmake --build --preset release --target renew_fixtures";
+  EXPECT_EQ(text, content_of(path)) << file
+                                    << "; wanted? cmake --build --preset release --target renew_fixtures";
 }
 
 }  // namespace chicane::test

@@ -31,7 +31,7 @@ struct BodyMotion {
 ///
 /// k are secant stiffnesses per mass, F/(m α), of a saturating tyre. One step is linearly implicit in (v_y,
 /// r): tyres that are stiff at low speed cannot make it unstable, and v_x → 0 tends to the kinematic bicycle,
-/// so one model serves every speed from standstill on.
+/// so one model serves every speed from standstill on. Tyres that share force add air and rolling (eq. 4g).
 ///
 /// T is double, or holds derivatives, several stages at once, or both (base/jet.hpp). No allocation, no
 /// failure for finite input, any dt > 0. Error O(dt²) per step.
@@ -209,7 +209,7 @@ class PredictionModel {
     return {decay, (1.0 - decay) * time_constant / dt};
   }
 
-  /// State of the tyres in a motion with the given road-wheel angle (docs/controller.md, eq. 4a–4e), in three
+  /// State of the tyres in a motion with the given road-wheel angle (docs/controller.md, eq. 4a–4g), in three
   /// parts: loads of the axles; tyres that share no force between the directions; tyres that do, by the
   /// wheels of each axle. With kSmooth all corners are rounded.
   template <bool kSmooth, class T>

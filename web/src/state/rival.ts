@@ -93,8 +93,8 @@ const next = store.data('page', () => ({ look: undefined as ReturnType<typeof se
 /** Asks the program for the race, and again as long as it goes on; passes over an answer after a later question. */
 async function look(): Promise<void> {
   clearTimeout(next.look);
-  if (!canRace()) return;
   const question = ++next.asked;
+  if (!canRace()) return;
   const text = await programPage('rival.json').catch(() => null);
   if (question !== next.asked) return;
   const now = text === null ? null : readRace(JSON.parse(text));
@@ -111,7 +111,6 @@ restartListeners.add(() => void look());
 
 /** Both cars begin at the line, B with these settings. */
 export async function startRace(chosenSettings: readonly ChosenSetting[]): Promise<void> {
-  raceProblem.value = '';
   const settings = Object.fromEntries(chosenSettings.map(({ key, value }) => [key, value]));
   const answer = await ask('/rival', JSON.stringify({ settings }));
   raceProblem.value = answer.isTaken ? '' : answer.message;
@@ -123,6 +122,7 @@ export async function startRace(chosenSettings: readonly ChosenSetting[]): Promi
 /** Ends the race; the run goes on. */
 export async function endRace(): Promise<void> {
   await ask('/rival', '{}');
+  race.value = null;
   void look();
 }
 
