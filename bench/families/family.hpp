@@ -25,14 +25,14 @@ concept Numbers = requires {
   requires std::same_as<A, std::array<typename A::value_type, std::tuple_size_v<A>>>;
 };
 
-/// One optimal control problem of a family that is no car: what a solve needs. A family draws its instances
-/// with `draw(random)`; one with instances that leave no solution has `draw(random, is_impossible)`.
+/// One optimal control problem of a family that is no car. A family draws its instances with `draw(random)`;
+/// a family that has instances without a solution, with `draw(random, is_impossible)`.
 template <int Nx, int Nu>
 struct FamilyProblem {
   static constexpr int kNx = Nx, kNu = Nu;
   std::array<double, Nx> start{};  ///< x_0
-  std::array<double, Nx> goal{};   ///< where a naive guess of the states goes in a straight line
-  std::array<double, Nu> idle{};   ///< the trivial input: none, or what hovers
+  std::array<double, Nx> goal{};   ///< end of the straight line of a naive guess
+  std::array<double, Nu> idle{};   ///< the trivial input: none, or a hover's
   std::array<double, Nu> most{};   ///< bounds of the inputs, in both directions
 
   [[nodiscard]] std::array<double, Nu> input_upper(int) const { return most; }

@@ -132,7 +132,7 @@ struct RocketLanding : FamilyProblem<7, 2> {
   static constexpr double kGravity = 9.81, kLever = 8.0, kFlow = 0.00035;
   double step = 0.25;
   double least = 180.0, strongest = 600.0;  ///< thrust [kN]
-  double unit = 1.0;                        ///< of the thrust [kN]: answers must not depend on it
+  double unit = 1.0;                        ///< unit of the thrust [kN]: changes no answer
   double glide = 0.4;                       ///< least slope of the approach
 
   CHICANE_INLINE auto dynamics(auto, const auto& x, const auto& u) const {

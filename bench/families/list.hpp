@@ -14,14 +14,14 @@
 
 namespace chicane::bench {
 
-/// Where a solve starts: from trivial inputs, simulated, or from trivial inputs and a straight line of
-/// states.
+/// Start of a solve: trivial inputs with the states of their simulation, or with states on a straight
+/// line.
 enum class NaiveStart { kIdle, kLine };
 [[nodiscard]] constexpr std::string_view to_string(NaiveStart start) noexcept {
   return start == NaiveStart::kIdle ? "idle" : "line";
 }
 
-/// What Ipopt found, by family, start and seed; kept in a file, as Ipopt takes minutes.
+/// Results of Ipopt by family, start and seed; kept in a file, as Ipopt takes minutes.
 using References = std::map<std::string, Outcome>;
 
 struct FamilyRequest {
@@ -35,7 +35,7 @@ struct FamilyRequest {
   bool is_impossible = false;     ///< the instances that leave no solution
 };
 
-/// Who solves: ours is the first. kHotIpopt: from its own multipliers of the cycle before, in closed loop.
+/// Solvers: ours is the first. kHotIpopt: from its own multipliers of the cycle before, in closed loop.
 enum Peer { kOurs, kHpipm, kFatrop, kIpopt, kHotIpopt, kPeers };
 
 /// One solve of ours, what an independent check finds of it, and what others make of the same problem.

@@ -20,7 +20,7 @@
 
 namespace chicane::bench {
 
-/// What must hold as equations in the inputs alone: a simulation, and Levenberg and Marquardt's method on the
+/// Equations that must hold, in the inputs alone: a simulation, and Levenberg and Marquardt's method on the
 /// rows that are missed, inputs inside their bounds. Shares no line with the solver; dense, for small
 /// problems.
 template <solver::OcpProblem P, int Capacity>

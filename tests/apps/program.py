@@ -13,7 +13,7 @@ ENVIRONMENT = {**os.environ, "CHICANE_DATA_DIR": str(ROOT / "data")}
 
 
 def run(*words, cwd=ROOT):
-    """Exit code and what is said on both outputs."""
+    """Exit code and both outputs."""
     done = subprocess.run([PROGRAM, *map(str, words)], cwd=cwd, env=ENVIRONMENT, capture_output=True, text=True, timeout=300)
     return done.returncode, done.stdout, done.stderr
 

@@ -35,7 +35,7 @@ telemetry::RunSummary example() {
   return run;
 }
 
-/// The run as JSON and as a table equals what is kept of it.
+/// The run as JSON and as a table equals its kept files.
 void expect_reports(const std::string& name, const telemetry::RunSummary& run) {
   const std::string folder = "protocol/fixtures/reports/";
   std::string json = to_json(run);

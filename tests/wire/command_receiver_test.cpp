@@ -10,7 +10,7 @@ const model::VehicleParams kCar;
 
 protocol::UdacitySteer straight(double throttle) { return {.command = {.throttle = throttle}}; }
 
-/// A receiver that has picked up commands; what it was told last acts.
+/// A receiver that has picked up commands; the last one acts.
 struct Told {
   explicit Told(safety::Receiver kind = safety::Receiver::kStopPlan) : receiver(kCar, kind) {
     static_cast<void>(receiver.sampled(0.0));
