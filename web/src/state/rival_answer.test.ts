@@ -1,8 +1,8 @@
-import { expect, it } from 'vitest';
+import { expect, it, vi } from 'vitest';
 import { restartListeners } from './demultiplexer';
 import { LapSamples } from './lap_samples';
 import { link, services } from './link';
-import { answerBy, pause } from './program_page';
+import { pause } from './program_page';
 import { poseOf, race } from './rival';
 import { readRace, sampleRace, standingOf } from './rival_answer';
 
@@ -19,14 +19,19 @@ it('says who drove the newest lap of both faster', () => {
 
 it('passes over an answer that a later question has overtaken', async () => {
   const answers: ((text: string) => void)[] = [];
-  answerBy(() => new Promise((answer) => answers.push(answer)));
+  const text = (): Promise<string> => new Promise((answer) => answers.push(answer));
+  vi.stubGlobal('fetch', () => Promise.resolve({ ok: true, text }));
+  const before = [link.value, services.value] as const;
   services.value = new Set(['/rival']);
   link.value = 'live'; // asks
   for (const listener of restartListeners) listener(); // asks again
+  await pause(1);
   answers[1]?.('{"state": "ended", "why": "newer"}');
   answers[0]?.('{"state": "ended", "why": "older"}');
   await pause(1);
   expect([answers.length, race.value?.why]).toEqual([2, 'newer']);
+  [link.value, services.value] = before;
+  vi.unstubAllGlobals();
 });
 
 it('the other car has laps along the road, from its poses', () => {
