@@ -53,30 +53,23 @@ TEST(ReadRecording, VisitsTheScenarioAndThenEachStepInOrder) {
   EXPECT_EQ(head["guard_version"], std::to_string(safety::kGuardVersion));
 }
 
-TEST(ReadRecording, EndsWithTheFailureOfItsVisitor) {
+TEST(ReadRecording, EndsWithTheFailureOfItsVisitorAndRefusesWhatIsNoRecording) {
   const TemporaryFile file;
   record_two_seconds(file.path());
   RecordingHead head;
   int visited = 0;
-  const auto report = read_recording(file.path(), head, [&](const RecordedEvent&) -> Result<void> {
+  const auto visit = [&](const RecordedEvent&) -> Result<void> {
     if (++visited < 3) return {};
     return fail(ErrorCode::kInvalidArgument, "enough");
-  });
-  ASSERT_FALSE(report);
-  EXPECT_EQ(report.error().message, "enough");
-  EXPECT_EQ(visited, 3);
-}
-
-TEST(ReadRecording, RefusesWhatIsNoRecording) {
-  const TemporaryFile file;
-  RecordingHead head;
-  const auto visit = [](const RecordedEvent&) -> Result<void> { return {}; };
+  };
+  EXPECT_EQ(test::refusal_of(read_recording(file.path(), head, visit)), "enough");
   EXPECT_FALSE(read_recording(file.path() + ".none", head, visit));
   std::ofstream(file.path()) << "a letter";
   const auto report = read_recording(file.path(), head, visit);
   ASSERT_FALSE(report);
   EXPECT_EQ(report.error().code, ErrorCode::kParse);
   EXPECT_THAT(report.error().message, HasSubstr(file.path()));
+  EXPECT_EQ(visited, 3);
 }
 
 class BagMetadata : public testing::Test, protected test::Folder {};
@@ -107,31 +100,25 @@ TEST_F(BagMetadata, CountsTheMessagesOfARecordingInTheLayoutOfRosbag2) {
   EXPECT_THAT(text, HasSubstr("  duration:\n    nanoseconds: 360000000\n"));
 }
 
-TEST_F(BagMetadata, AFolderIsTheBagOfOneRecording) {
+TEST_F(BagMetadata, OfAFolderIsThatOfOneRecordingThatIsThere) {
   write("metadata.yaml", "rosbag2_bagfile_information:\n  relative_file_paths:\n    - \"other.mcap\"\n");
   EXPECT_THAT(test::refusal_of(can_be_bag(path("run.mcap"))), HasSubstr("another recording"));
   EXPECT_TRUE(can_be_bag(path("other.mcap")));
+  EXPECT_FALSE(write_bag_metadata(path("none.mcap")));
 }
 
-TEST_F(BagMetadata, FailsWithoutTheRecording) { EXPECT_FALSE(write_bag_metadata(path("none.mcap"))); }
-
-TEST(TemporaryFile, NamesAPlaceWhereNothingIsAndClearsUp) {
+TEST(TemporaryFile, NamesAnotherPlaceEachTimeWhereNothingIsAndClearsUp) {
   std::string path;
   {
-    const recording::TemporaryFile file{".mcap"};
+    const recording::TemporaryFile file{".mcap"}, other{".mcap"};
     path = file.path();
+    EXPECT_NE(path, other.path());
     EXPECT_TRUE(path.ends_with(".mcap"));
     EXPECT_FALSE(std::filesystem::exists(path));
     std::ofstream{path} << "text";
     EXPECT_TRUE(std::filesystem::exists(path));
   }
   EXPECT_FALSE(std::filesystem::exists(path));
-}
-
-TEST(TemporaryFile, IsAnotherOneEachTime) {
-  const recording::TemporaryFile one{".txt"};
-  const recording::TemporaryFile other{".txt"};
-  EXPECT_NE(one.path(), other.path());
 }
 
 }  // namespace

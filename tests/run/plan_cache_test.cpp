@@ -153,10 +153,10 @@ TEST_F(PlanCacheTest, AStoppedSearchIsNotKept) {
 TEST(PlanBytes, EachCutOfAPlanIsRefused) {
   road::RacingLine line{.car = "udacity", .track = "ring", .length = 10.0, .points = {{}, {.s = 10.0}}};
   const std::string bytes = to_bytes(line);
-  ASSERT_TRUE(line_from_bytes(bytes));
+  ASSERT_TRUE(from_bytes<road::RacingLine>(bytes));
   for (std::size_t size = 0; size < bytes.size(); ++size)
-    EXPECT_FALSE(line_from_bytes(std::string_view(bytes).substr(0, size))) << size;
-  EXPECT_FALSE(line_from_bytes(bytes + "x"));
+    EXPECT_FALSE(from_bytes<road::RacingLine>(std::string_view(bytes).substr(0, size))) << size;
+  EXPECT_FALSE(from_bytes<road::RacingLine>(bytes + "x"));
 }
 
 TEST(Planning, EndsWithTheProcessesFlag) {

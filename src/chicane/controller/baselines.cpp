@@ -53,12 +53,8 @@ class Baseline final : public CopyableController<Baseline<Law>>, public Tunable<
   using Options = typename Law::Options;
 
   Baseline(std::string_view name, const Options& options, const model::VehicleParams& vehicle)
-      : name_{name},
-        law_{options, vehicle},
-        speed_{options.speed, vehicle},
-        steer_limit_{vehicle.steer_limit},
-        lowest_throttle_{-vehicle.brake_throttle_limit} {
-    reset();
+      : name_{name}, speed_{options.speed, vehicle} {
+    Baseline::configure(options, vehicle);
   }
 
   [[nodiscard]] const StepResult& step(const model::Measurement& now,
@@ -76,6 +72,7 @@ class Baseline final : public CopyableController<Baseline<Law>>, public Tunable<
     law_.configure(options, vehicle);
     speed_.configure(options.speed, vehicle);
     steer_limit_ = vehicle.steer_limit;
+    lowest_throttle_ = -vehicle.brake_throttle_limit;
   }
 
   void reset() noexcept override {
@@ -147,8 +144,8 @@ class Baseline final : public CopyableController<Baseline<Law>>, public Tunable<
   std::string_view name_;
   Law law_;
   SpeedHold speed_;
-  double steer_limit_;      ///< [rad]
-  double lowest_throttle_;  ///< pedal of full braking
+  double steer_limit_ = 0.0;      ///< [rad]
+  double lowest_throttle_ = 0.0;  ///< pedal of full braking
   WaypointLine line_;
   double last_time_ = 0.0;  ///< time of the last step [s], if has_time_
   bool has_time_ = false;
@@ -159,9 +156,6 @@ class Baseline final : public CopyableController<Baseline<Law>>, public Tunable<
 class PidLaw {
  public:
   using Options = PidOptions;
-  PidLaw(const PidOptions& options, const model::VehicleParams& vehicle) noexcept {
-    configure(options, vehicle);
-  }
   void configure(const PidOptions& options, const model::VehicleParams& vehicle) noexcept {
     options_ = options;
     steer_limit_ = vehicle.steer_limit;
@@ -195,9 +189,6 @@ class PidLaw {
 class PurePursuitLaw {
  public:
   using Options = PurePursuitOptions;
-  PurePursuitLaw(const PurePursuitOptions& options, const model::VehicleParams& vehicle) noexcept {
-    configure(options, vehicle);
-  }
   void configure(const PurePursuitOptions& options, const model::VehicleParams& vehicle) noexcept {
     options_ = options;
     rear_axle_ = vehicle.rear_axle;
@@ -226,9 +217,6 @@ class PurePursuitLaw {
 class StanleyLaw {
  public:
   using Options = StanleyOptions;
-  StanleyLaw(const StanleyOptions& options, const model::VehicleParams& vehicle) noexcept {
-    configure(options, vehicle);
-  }
   void configure(const StanleyOptions& options, const model::VehicleParams& vehicle) noexcept {
     options_ = options;
     front_axle_ = vehicle.front_axle;

@@ -73,15 +73,8 @@ class VehiclePlan final : public PlanModelOf<PlanModel, VehicleModel> {
   [[nodiscard]] road::RacingLinePoint point(const double* z) const override {
     const model::VehicleParams& car = vehicle_;
     const model::BodyMotion<double> body{z[kVx], z[kVy], z[kYawRate], z[kSteer], z[kPedal]};
-    return {.offset = z[kOffset],
-            .heading = z[kHeading],
-            .vx = z[kVx],
-            .vy = z[kVy],
-            .yaw_rate = z[kYawRate],
-            .steer = z[kSteer],
-            .steer_command = z[kSteer] + car.steer_lag * z[kSteerRate],
-            .acceleration = model_.model.change(body).vx,
-            .throttle = throttle_for(car, z[kPedal] + car.drive_lag * z[kPedalRate], z[kVx])};
+    return point_of(z, z[kSteer] + car.steer_lag * z[kSteerRate], model_.model.change(body).vx,
+                    throttle_for(car, z[kPedal] + car.drive_lag * z[kPedalRate], z[kVx]));
   }
 
  private:

@@ -120,7 +120,8 @@ static_assert(sizeof(road::RacingLinePoint) == kFields.size() * sizeof(double), 
 constexpr std::size_t kMostPoints = 1'000'000;  // limit of a line's points in the cache; chosen
 
 /// Reads or writes a line, field by field.
-void line_fields(auto& archive, auto& line) {
+void fields(auto& archive, auto& line) requires requires { line.points; }
+{
   archive(line.car, line.track, line.length, line.margin, line.is_best_so_far);
   archive.list(line.points, sizeof(road::RacingLinePoint), kMostPoints, [&](auto& point) {
     for (const auto field : kFields) archive(point.*field);
@@ -128,25 +129,29 @@ void line_fields(auto& archive, auto& line) {
 }
 
 /// Reads or writes a limit, field by field.
-void limit_fields(auto& archive, auto& limit) {
+void fields(auto& archive, auto& limit) requires requires { limit.witness; }
+{
   archive(limit.bound.lap);
   for (auto& sector : limit.bound.sectors) archive(sector);
-  line_fields(archive, limit.line);
+  fields(archive, limit.line);
   archive(limit.nodes, limit.effort.iterations, limit.effort.work, limit.of_optimum.iterations,
           limit.of_optimum.work, limit.stationarity, limit.violation, limit.is_cut_short);
   archive.optional(limit.witness, [&](auto& witness) {
     archive(witness.lap_time, witness.worst, witness.laps, witness.least_edge);
-    line_fields(archive, witness.line);
+    fields(archive, witness.line);
   });
 }
 
+const road::RacingLine& line_of(const road::RacingLine& line) { return line; }
+const road::RacingLine& line_of(const lap_time::PlantLimit& limit) { return limit.line; }
+
 /// Result of that name in the cache; none if it is missing or damaged.
-template <class T, class Read>
-std::optional<T> kept(const DiskCache* cache, const std::string& name, const Read& read) {
+template <class T>
+std::optional<T> kept(const DiskCache* cache, const std::string& name) {
   if (cache == nullptr || name.empty()) return {};
   const std::optional<std::string> bytes = cache->find(name);
   if (!bytes) return {};
-  std::optional<T> known = read(*bytes);
+  std::optional<T> known = from_bytes<T>(*bytes);
   if (!known) cache->report_damage(name);
   return known;
 }
@@ -162,8 +167,7 @@ std::optional<lap_time::PlantLimit> whole_limit(const road::Track& track, std::s
   options.budget = lap_time::PlantLimitOptions{}.budget;
   const bool wants_witness = std::exchange(options.wants_witness, true);
   const auto find = [&] {
-    return kept<lap_time::PlantLimit>(cache.get(), name_of_limit(track, plant, deviation, options, params),
-                                      limit_from_bytes);
+    return kept<lap_time::PlantLimit>(cache.get(), name_of_limit(track, plant, deviation, options, params));
   };
   std::optional<lap_time::PlantLimit> known = find();
   if (wants_witness) return known;
@@ -218,7 +222,7 @@ Result<road::RacingLine> cached_plan(const road::Track& track, const model::Vehi
                                      const lap_time::RacingPlanOptions& options) {
   const std::string name = name_of_plan(track, car, options);
   const std::shared_ptr<const DiskCache> cache = name.empty() ? nullptr : cache_in_use();
-  if (std::optional<road::RacingLine> known = kept<road::RacingLine>(cache.get(), name, line_from_bytes))
+  if (std::optional<road::RacingLine> known = kept<road::RacingLine>(cache.get(), name))
     return std::move(*known);
   Result<road::RacingLine> found = lap_time::plan_racing_line(track, car, options);
   if (cache && found) cache->keep(name, to_bytes(*found));
@@ -234,7 +238,7 @@ Result<lap_time::PlantLimit> cached_limit(const road::Track& track, std::string_
     return std::move(*known);
   const std::shared_ptr<const DiskCache> cache = cache_in_use();
   const std::string name = cache ? name_of_limit(track, plant, deviation, options, params) : "";
-  if (auto known = kept<lap_time::PlantLimit>(cache.get(), name, limit_from_bytes)) return std::move(*known);
+  if (auto known = kept<lap_time::PlantLimit>(cache.get(), name)) return std::move(*known);
   Result<lap_time::PlantLimit> found = lap_time::find_plant_limit(track, plant, deviation, options, params);
   if (name.empty() || !found) return found;
   lap_time::PlantLimitOptions unlimited = options;
@@ -276,33 +280,25 @@ Result<void> cached_room(const road::Track& track, const model::VehicleParams& c
   return fits;
 }
 
-std::string to_bytes(const road::RacingLine& line) {
+template <class T>
+std::string to_bytes(const T& result) {
   protocol::WritingArchive archive;
-  line_fields(archive, line);
+  fields(archive, result);
   return archive.bytes();
 }
+template std::string to_bytes(const road::RacingLine&);
+template std::string to_bytes(const lap_time::PlantLimit&);
 
-std::optional<road::RacingLine> line_from_bytes(std::string_view bytes) {
+template <class T>
+std::optional<T> from_bytes(std::string_view bytes) {
   protocol::ReadingArchive archive(bytes);
-  road::RacingLine line;
-  line_fields(archive, line);
-  if (!archive.is_at_end() || line.is_empty()) return {};
-  return line;
+  T result;
+  fields(archive, result);
+  if (!archive.is_at_end() || line_of(result).is_empty()) return {};
+  return result;
 }
-
-std::string to_bytes(const lap_time::PlantLimit& limit) {
-  protocol::WritingArchive archive;
-  limit_fields(archive, limit);
-  return archive.bytes();
-}
-
-std::optional<lap_time::PlantLimit> limit_from_bytes(std::string_view bytes) {
-  protocol::ReadingArchive archive(bytes);
-  lap_time::PlantLimit limit;
-  limit_fields(archive, limit);
-  if (!archive.is_at_end() || limit.line.is_empty()) return {};
-  return limit;
-}
+template std::optional<road::RacingLine> from_bytes(std::string_view);
+template std::optional<lap_time::PlantLimit> from_bytes(std::string_view);
 
 namespace {
 

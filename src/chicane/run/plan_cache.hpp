@@ -96,11 +96,11 @@ void stop_planning_by(const std::atomic<bool>& flag) noexcept;
 [[nodiscard]] Result<void> cached_room(const road::Track& track, const model::VehicleParams& car,
                                        double beside, double scale);
 
-/// Bytes of a result: numbers in the machine's own representation.
-[[nodiscard]] std::string to_bytes(const road::RacingLine& line);
-[[nodiscard]] std::string to_bytes(const lap_time::PlantLimit& limit);
+/// Bytes of a road::RacingLine or lap_time::PlantLimit: numbers in the machine's own representation.
+template <class T>
+[[nodiscard]] std::string to_bytes(const T& result);
 /// Result from its bytes; none if they are no such result.
-[[nodiscard]] std::optional<road::RacingLine> line_from_bytes(std::string_view bytes);
-[[nodiscard]] std::optional<lap_time::PlantLimit> limit_from_bytes(std::string_view bytes);
+template <class T>
+[[nodiscard]] std::optional<T> from_bytes(std::string_view bytes);
 
 }  // namespace chicane::run

@@ -73,15 +73,7 @@ class UdacityLimit final : public WithModel<UdacityModel> {
   }
   [[nodiscard]] road::RacingLinePoint point(const double* z) const override {
     const auto m = model_.motion(z[kVx], z[kVy], z[kYawRate], z[kSteer], z[kPedal]);
-    return {.offset = z[kOffset],
-            .heading = z[kHeading],
-            .vx = z[kVx],
-            .vy = z[kVy],
-            .yaw_rate = z[kYawRate],
-            .steer = z[kSteer],
-            .steer_command = z[kSteer],
-            .acceleration = m.vx,
-            .throttle = std::clamp(model_.pedal_for(z[kPedal], z[kVx], m.vx), -1.0, 1.0)};
+    return point_of(z, z[kSteer], m.vx, std::clamp(model_.pedal_for(z[kPedal], z[kVx], m.vx), -1.0, 1.0));
   }
 
   [[nodiscard]] std::vector<double> error_weights() const override { return {25.0, 4.0, 4.0, 0.1, 0.1}; }
@@ -187,15 +179,9 @@ class DoubleTrackLimit final : public WithModel<DoubleTrackModel> {
   [[nodiscard]] road::RacingLinePoint point(const double* z) const override {
     const auto m = model_.motion(z);
     const sim::DoubleTrackParams& car = model_.car;
-    return {.offset = z[kOffset],
-            .heading = z[kHeading],
-            .vx = z[kVx],
-            .vy = z[kVy],
-            .yaw_rate = z[kYawRate],
-            .steer = z[kSteer],
-            .steer_command = z[kSteer] + car.steer_lag * z[DoubleTrackModel::kSteerRate],
-            .acceleration = m.ax + z[kYawRate] * z[kVy],
-            .throttle = std::clamp(z[kPedal] + car.drive_lag * z[DoubleTrackModel::kPedalRate], -1.0, 1.0)};
+    const double pedal = z[kPedal] + car.drive_lag * z[DoubleTrackModel::kPedalRate];
+    return point_of(z, z[kSteer] + car.steer_lag * z[DoubleTrackModel::kSteerRate],
+                    m.ax + z[kYawRate] * z[kVy], std::clamp(pedal, -1.0, 1.0));
   }
 
   [[nodiscard]] std::vector<double> error_weights() const override {

@@ -45,6 +45,21 @@ struct CarSize {
 /// First variables of every plant's model: position and motion of the body in the road's axes.
 enum CommonState { kOffset, kHeading, kVx, kVy, kYawRate, kSteer, kPedal };
 
+/// Point of a line with the variables `z` of its node, the road-wheel angle commanded [rad], the rate of vx
+/// [m/s²] and the pedal.
+[[nodiscard]] inline road::RacingLinePoint point_of(const double* z, double steer_command,
+                                                    double acceleration, double throttle) noexcept {
+  return {.offset = z[kOffset],
+          .heading = z[kHeading],
+          .vx = z[kVx],
+          .vy = z[kVy],
+          .yaw_rate = z[kYawRate],
+          .steer = z[kSteer],
+          .steer_command = steer_command,
+          .acceleration = acceleration,
+          .throttle = throttle};
+}
+
 /// Functions of a node for the search, from a model that is a template over the scalar.
 template <class Model>
 class ModelFunctions final : public NodeFunctions {
