@@ -317,7 +317,7 @@ TEST(LiveSettings, DescribeThemselvesInJson) {
   const auto expect = [&](const std::string& key, const nlohmann::json& values) {
     for (const auto& [name, value] : values.items()) EXPECT_EQ(entry(key)[name], value) << key << ' ' << name;
   };
-  // By default the preset's, not what is set now; it started with the command line's.
+  // The default is the preset's value, neither the present one nor the command line's.
   expect("cubic_mpc.horizon_steps", {{"kind", "integer"},
                                      {"group", "cubic_mpc"},
                                      {"minimum", 2},

@@ -11,12 +11,12 @@ namespace {
 const std::vector<Vec2> kLine{{1.0, 2.0}, {3.0, 4.0}};
 constexpr std::int64_t kStamp = 1'700'000'001'250'000'007;
 
-/// What is read of the message's bytes.
+/// Message as its receiver reads it.
 template <class Message>
 Message read_again(const Message& message) {
   return *test::good(decode<Message>(encode(message)));
 }
-/// The same of a message that is refused wherever it is cut.
+/// Message as its receiver reads it, which refuses its bytes wherever they are cut.
 template <class Message>
 Message read_whole(const Message& message) {
   test::expect_refused_when_cut<Message>(encode(message));
@@ -61,7 +61,7 @@ TEST(CarMessages, AreReadAsTheyWereWrittenAndRefusedWhenTheyAreCut) {
   EXPECT_EQ(transforms[0].frame, "map");
   EXPECT_EQ(transforms[0].child_frame, "odom");
   EXPECT_EQ(transforms[0].pose.y, -2.0);
-  EXPECT_NEAR(transforms[0].pose.psi, 0.5, 1e-12);  // by way of a quaternion
+  EXPECT_NEAR(transforms[0].pose.psi, 0.5, 1e-12);  // the message holds a quaternion
 
   EXPECT_EQ(read_whole(ClockMessage{kStamp}).time, kStamp);
   for (const bool data : {true, false}) EXPECT_EQ(read_whole(BoolMessage{data}).data, data);

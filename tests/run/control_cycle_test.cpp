@@ -42,7 +42,7 @@ TEST(ControlCycle, DoesOutsideTheLoopWhatItDoesInsideAndStopsWhenNothingIsMeasur
       ASSERT_TRUE(std::isfinite(frame->result.command.steer));
       least = std::min(least, frame->result.command.throttle);
     }
-    EXPECT_LT(least, 0.0) << "a car that is told nothing stops";
+    EXPECT_LT(least, 0.0) << "a car without commands stops";
   }
 }
 

@@ -103,16 +103,16 @@ TEST(Sensor, TheLongestLatencyIsHeldAlsoWhereItIsSampledOften) {
 struct Sent {
   double due, throttle;
 };
-/// What a delay tells at times [s], one after the other, of commands that were sent.
+/// Throttles that act at times [s], one after the other, of commands that were sent.
 std::vector<double> throttles_at(const std::vector<double>& times, const std::vector<Sent>& commands,
                                  double first = 0.0) {
   ActuationDelay delay;
   delay.reset({.steer = -first, .throttle = first});
   for (const Sent& each : commands)
     delay.push(each.due, {.steer = -each.throttle, .throttle = each.throttle});
-  std::vector<double> told;
-  for (const double time : times) told.push_back(delay.at(time).throttle);
-  return told;
+  std::vector<double> acting;
+  for (const double time : times) acting.push_back(delay.at(time).throttle);
+  return acting;
 }
 
 TEST(ActuationDelay, ShowsTheNewestOfTheCommandsDueInTheOrderOfSending) {

@@ -5,7 +5,7 @@
 
 namespace chicane::test {
 
-/// What is written equals the file that is kept of it in tests/. CHICANE_WRITE_FIXTURES=1 renews the file:
+/// Expects `text` to equal the file kept in tests/. CHICANE_WRITE_FIXTURES=1 renews the file:
 /// look at the difference before you keep it.
 inline void expect_kept(const std::string& file, const std::string& text) {
   const fs::path path = fs::path(CHICANE_SOURCE_DIR) / "tests" / file;

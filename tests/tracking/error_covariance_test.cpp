@@ -113,7 +113,7 @@ TEST(ErrorCovariance, IsMirrored) {
   }
 }
 
-// Where a car whose rear tyres slide is unstable, a matrix that is not symmetric becomes less so.
+// A car whose rear tyres slide is unstable: there the asymmetry of a matrix grows.
 TEST(ErrorCovariance, ForgetsThatTheCarHasSlid) {
   constexpr Errors::Slopes kSliding{0.995, -0.362, -0.004, 0.994}, kGripping{0.953, -0.384, 0.002, 0.957};
   constexpr int kInterval = 4;  // steps of 0.01 s

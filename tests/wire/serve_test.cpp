@@ -188,7 +188,7 @@ TEST(Serve, NamesTheSceneThatIsNotOurs) {
   EXPECT_TRUE(served.has_logged("PID Controller"));
 }
 
-/// What another simulator is answered that asks to be served, too.
+/// Answer to another simulator that asks to be served, too.
 std::string answer_to_another(const Served& served) {
   RawSocket second(served.port());
   second.send(test::unity_handshake(served.port()));

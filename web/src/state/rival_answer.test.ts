@@ -1,4 +1,4 @@
-import { expect, it, vi } from 'vitest';
+import { afterEach, expect, it, vi } from 'vitest';
 import { restartListeners } from './demultiplexer';
 import { LapSamples } from './lap_samples';
 import { link, services } from './link';
@@ -8,6 +8,12 @@ import { readRace, sampleRace, standingOf } from './rival_answer';
 
 const lap = (number: number, time: number, isClean = true) => ({ lap: number, time, isClean });
 const none = readRace({ state: 'racing' });
+
+const before = [link.value, services.value] as const;
+afterEach(() => {
+  [link.value, services.value, race.value] = [...before, null];
+  vi.unstubAllGlobals();
+});
 
 it('says who drove the newest lap of both faster', () => {
   const race = { ...none, a: [lap(1, 30), lap(2, 24), lap(3, 24)], b: [lap(1, 30), lap(2, 23.902)] };
@@ -21,7 +27,6 @@ it('passes over an answer that a later question has overtaken', async () => {
   const answers: ((text: string) => void)[] = [];
   const text = (): Promise<string> => new Promise((answer) => answers.push(answer));
   vi.stubGlobal('fetch', () => Promise.resolve({ ok: true, text }));
-  const before = [link.value, services.value] as const;
   services.value = new Set(['/rival']);
   link.value = 'live'; // asks
   for (const listener of restartListeners) listener(); // asks again
@@ -30,8 +35,6 @@ it('passes over an answer that a later question has overtaken', async () => {
   answers[0]?.('{"state": "ended", "why": "older"}');
   await pause(1);
   expect([answers.length, race.value?.why]).toEqual([2, 'newer']);
-  [link.value, services.value] = before;
-  vi.unstubAllGlobals();
 });
 
 it('the other car has laps along the road, from its poses', () => {
